@@ -1,0 +1,78 @@
+# Vitrine. `make demo` and `make test` do everything on a fresh machine; `make help` lists the rest.
+#   config=release|debug|sanitize   (default release; each builds into build/$(config))
+config ?= release
+B := build/$(config)
+CC ?= cc
+prefix ?= /usr/local
+
+WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Werror
+# Same bits on every host too: no contraction, no reassociation.
+BASE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -DCL_TARGET_OPENCL_VERSION=120 -ffp-contract=off -MMD -MP -Iinclude
+ifeq ($(config),release)
+OPT := -O2 -g
+else ifeq ($(config),debug)
+OPT := -O0 -g
+else ifeq ($(config),sanitize)
+OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+else
+$(error config must be release, debug or sanitize, got '$(config)')
+endif
+CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
+
+# The kernels in the order in which they are joined into one program.
+KERNELS := records.clh strict.clh lanes.clh random.clh scene.clh texture.clh ray.clh visibility.cl samples.cl direct.cl \
+           photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl resolve.cl
+
+RUNTIME := $(wildcard runtime/*.c)
+PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)
+BAKE := $(wildcard bake/*.c)
+SCENES := $(wildcard bake/scenes/*.c)
+TESTS := $(wildcard tests/unit/*.c tests/golden/*.c tests/numeric/*.c tests/fuzz/*.c)
+BENCH := $(wildcard tests/bench/*.c)
+
+obj = $(patsubst %.c,$(B)/%.o,$(1))
+# Libraries. Embree 3 or 4, whichever is installed.
+EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
+LIBS_RUNTIME := -lOpenCL
+LIBS_PLAY := -lpng $(LIBS_RUNTIME)
+LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
+
+.PHONY: all help deps demo test bench clean install format
+all: deps $(B)/vitrine-play $(B)/vitrine-bake
+
+include tests/deps.mk
+
+$(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
+	@mkdir -p $(@D)
+	@{ echo '/* Made from kernels/ by the Makefile. */'; echo '#include "kernel_sources.h"'; \
+	   echo 'const char *const vit_kernel_sources[] = {'; \
+	   for f in $(KERNELS); do printf '"#line 1 \\"%s\\"\\n"\n' $$f; sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' kernels/$$f; echo ','; done; \
+	   echo '};'; echo 'const unsigned vit_kernel_source_count = sizeof vit_kernel_sources / sizeof vit_kernel_sources[0];'; } > $@
+
+$(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
+$(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
+$(B)/tests/%.o: CFLAGS_ALL += -Ibake -Iruntime -Itests -DVIT_EMBREE=$(EMBREE) -DVIT_BUILD_DIR='"$(B)"'
+$(B)/kernel_sources.o: $(B)/kernel_sources.c
+	$(CC) $(CFLAGS_ALL) -c $< -o $@
+$(B)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -c $< -o $@
+
+$(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(B)/kernel_sources.o
+	@rm -f $@
+	$(AR) rcs $@ $^
+$(B)/vitrine-play: $(call obj,$(PLAY)) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_PLAY) -o $@
+$(B)/vitrine-bake: $(call obj,$(BAKE)) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(B)/make-scenes: $(call obj,$(SCENES))
+	$(CC) $(OPT) $^ -lpng -lm -o $@
+
+include tests/test.mk
+
+clean:
+	rm -rf build
+format:
+	clang-format -i $$(git ls-files '*.c' '*.h')
+
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -1,0 +1,68 @@
+/* import.c: meshes of all files of a scene as one indexed triangle soup, in world space. */
+#ifndef VIT_BAKE_MODEL_H
+#define VIT_BAKE_MODEL_H
+
+#include "scene.h"
+
+typedef struct model_image {
+    char name[SCENE_PATH];     /* file, or "file#index" if embedded */
+    int width, height;         /* 1..16384 */
+    uint8_t *rgba;             /* 4 * width * height, sRGB colour, linear alpha, first row on top */
+} model_image;
+
+typedef struct model_material {
+    char name[SCENE_NAME];
+    float albedo[3];           /* linear, multiplies the texture; finite, clamped to 0..VIT_MAX_ALBEDO */
+    float emission[3];         /* W/(m2 sr), finite, >= 0 */
+    int image;                 /* index in model.images, -1 if none */
+    uint32_t wrap_u, wrap_v;   /* VIT_WRAP_* */
+    float cutoff;              /* alpha test: texels with alpha * factor < cutoff are holes; 0: opaque */
+    float alpha;               /* constant alpha factor */
+    uint64_t triangles;        /* that use it */
+} model_material;
+
+typedef struct model_camera {
+    char name[SCENE_NAME];
+    double eye[3], target[3], up[3], fov; /* world space; fov vertical, degrees (0: not stated) */
+} model_camera;
+
+typedef struct model_light {
+    char name[SCENE_NAME];
+    bool spot;
+    double position[3], direction[3], power[3], inner, outer; /* world space; degrees from the axis; W, glTF candela taken as W/sr */
+    double range;
+} model_light;
+
+typedef struct model {
+    float *position;           /* 3 a vertex, finite */
+    float *normal;             /* 3 a vertex, unit */
+    float *uv;                 /* 2 a vertex, finite; v = 0 is the image's first row */
+    uint32_t vertices;
+    uint32_t *index;           /* 3 a triangle, < vertices; no triangle of zero area (in float arithmetic of v1-v0, v2-v0) */
+    uint32_t *material;        /* 1 a triangle, < materials */
+    uint32_t triangles;        /* >= 1, <= VIT_MAX_TRIANGLES */
+    model_material *materials;
+    int material_count;        /* >= 1 */
+    model_image *images;
+    int image_count;
+    model_camera *cameras;
+    int camera_count;
+    model_light *lights;
+    int light_count;
+    double lo[3], hi[3];       /* box of the vertices in use */
+    uint64_t degenerate;       /* triangles dropped for zero area */
+    uint64_t not_finite;       /* triangles dropped for NaN or infinite positions */
+    uint64_t not_triangles;    /* points and lines dropped */
+    uint64_t warnings;         /* lines given to `warn` */
+} model;
+
+/* One line, without a line feed, for the user to see. */
+typedef void model_warn_fn(void *user, const char *line);
+
+/* Imports every mesh of `s`, applies node and scene transforms and material overrides, decodes the textures in use.
+ * strict: a missing or broken texture is VIT_BAD_INPUT rather than a warning and the plain colour.
+ * VIT_BAD_INPUT: the text names file and cause. On failure nothing is left to free. */
+vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
+void model_free(model *m);
+
+#endif

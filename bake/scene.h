@@ -1,0 +1,90 @@
+/* scene.c: the scene file (libconfig) as plain data. Grammar: bake/README.md. */
+#ifndef VIT_BAKE_SCENE_H
+#define VIT_BAKE_SCENE_H
+
+#include "vitrine.h"
+#include <stdbool.h>
+
+#define SCENE_PATH 1024
+#define SCENE_NAME 128
+
+typedef struct scene_mesh {
+    char file[SCENE_PATH];     /* resolved against the scene file's folder */
+    double transform[12];      /* 3 x 4, row-major: translate * rotate (x, then y, then z; degrees) * scale */
+    int line;                  /* in the scene file, for errors */
+} scene_mesh;
+
+/* A camera or light keyframe; fields that the file leaves out repeat the key before. */
+typedef struct scene_camera_key {
+    double time;               /* seconds */
+    double eye[3], target[3], up[3];
+    double fov;                /* vertical, degrees */
+    double exposure;           /* factor on radiance */
+} scene_camera_key;
+
+typedef struct scene_light_key {
+    double time;
+    double position[3];
+    double target[3];          /* spot lights look at it */
+    double power[3];           /* W a channel, radiated into the whole sphere (a spot light's cone cuts a part out of it) */
+} scene_light_key;
+
+typedef struct scene_light {
+    bool spot;
+    double inner, outer;       /* degrees from the axis, spot lights */
+    double range;              /* metres; 0: none */
+    bool window;               /* VIT_FALLOFF_WINDOW */
+    bool photons;              /* gives indirect light; default true */
+    char use[SCENE_NAME];      /* name of a glTF light that gives kind, position, direction, power; "" if none */
+    scene_light_key *keys;     /* at least one unless `use`; times strictly increasing */
+    int key_count;
+    int line;
+} scene_light;
+
+/* Overrides of the material called `name`; has_* say which. */
+typedef struct scene_material {
+    char name[SCENE_NAME];
+    bool has_color, has_texture, has_emission, has_cutoff;
+    double color[3], emission[3], cutoff;
+    char texture[SCENE_PATH];  /* resolved; "" removes the texture */
+    int line;
+} scene_material;
+
+typedef struct scene_quality {
+    int photons;               /* emitted paths; 0: no indirect light */
+    int bounces;               /* 1..32 */
+    double radius;             /* metres; 0: auto */
+    int tile;                  /* 8, 16, 32, 64 */
+    bool buckets;              /* estimate: list (false) or buckets */
+    bool raw;                  /* buckets without interpolation, 54 directions: the source's way */
+    double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
+    bool normal_keys;
+} scene_quality;
+
+typedef struct scene {
+    char path[SCENE_PATH];     /* the scene file; or the mesh, if there was no scene file */
+    char name[SCENE_NAME];
+    int width, height, frames;
+    double fps;
+    double background[3];      /* W/(m2 sr) */
+    scene_mesh *meshes;
+    int mesh_count;
+    char camera_use[SCENE_NAME]; /* name of a glTF camera that gives eye, target, up, fov; "" if none */
+    double near;               /* metres, nearest depth slice; 0: auto */
+    scene_camera_key *camera;  /* at least one unless camera_use or `automatic` */
+    int camera_count;
+    scene_light *lights;
+    int light_count;
+    scene_material *materials;
+    int material_count;
+    scene_quality quality;
+    bool automatic;            /* no scene file: camera and light are made from the model's box (tracks.c) */
+} scene;
+
+/* Reads `path`. VIT_BAD_INPUT: why->text is "file:line: what". On failure nothing is left to free. */
+vit_status scene_read(const char *path, scene *out, vit_text *why);
+/* A scene for a bare mesh: default output, quality, automatic camera and light. */
+vit_status scene_for_mesh(const char *path, scene *out, vit_text *why);
+void scene_free(scene *s);
+
+#endif

@@ -1,0 +1,167 @@
+/* Vitrine: plays a baked scene with global illumination, the same bits on every OpenCL device.
+ *
+ *     vit_requirements need;
+ *     vit_text why;
+ *     vit_open_info info = {.pack = bytes, .pack_size = size};
+ *     if (vit_require(&info, &need, &why) != VIT_OK) ...;     // checks the whole pack, allocates nothing
+ *     info.arena = malloc(need.host_bytes);  info.arena_size = need.host_bytes;
+ *     vit *v;
+ *     if (vit_open(&info, &v, &why) != VIT_OK) ...;           // all buffers and kernels are made here
+ *     for (uint32_t i = 0; i < need.frames; i++)
+ *         vit_frame(v, i, framebuffer, stride, &why);         // no allocation, no file, no read-back but the finished frame
+ *     vit_close(v);
+ *
+ * The library never calls malloc, opens a file or prints; the OpenCL implementation below it may. One vit is used by one
+ * thread at a time; several may be open at once. Conventions: metres, y up, right-handed; W, W/m2, W/(m2 sr). */
+#ifndef VITRINE_H
+#define VITRINE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define VIT_VERSION "0.1.0"
+
+/* Results, which are also the exit codes of all tools: X(name, value, meaning). */
+#define VIT_STATUSES(X)                                                                                                          \
+    X(OK, 0, "done")                                                                                                             \
+    X(FAILED, 1, "failed (no device, out of memory, a write that failed)")                                                       \
+    X(USAGE, 2, "usage: unknown option or value")                                                                                \
+    X(BUDGET, 3, "budget missed")                                                                                                \
+    X(MISMATCH, 4, "verification mismatch")                                                                                      \
+    X(BAD_INPUT, 5, "bad input: scene, mesh, texture or pack")
+
+typedef enum vit_status {
+#define X(name, value, meaning) VIT_##name = value,
+    VIT_STATUSES(X)
+#undef X
+} vit_status;
+
+/* One line, without a line feed, that names the thing and the cause of what was not VIT_OK. */
+typedef struct vit_text {
+    char text[512];
+} vit_text;
+
+/* Framebuffer formats: X(name, bytes a pixel, meaning). */
+#define VIT_FORMATS(X)                                                                                                           \
+    X(XRGB8888, 4, "0x00RRGGBB words, sRGB curve")                                                                               \
+    X(RGB565, 2, "rrrrrggggggbbbbb half words, sRGB curve")                                                                      \
+    X(RGBA32F, 16, "four floats, linear radiance times exposure, alpha 1")
+
+typedef enum vit_format {
+#define X(name, bytes, meaning) VIT_FORMAT_##name,
+    VIT_FORMATS(X)
+#undef X
+} vit_format;
+
+/* What the frame shows: X(name, meaning). All but the first show the method's insides. */
+#define VIT_VIEWS(X)                                                                                                             \
+    X(final, "the picture")                                                                                                      \
+    X(direct, "direct light alone")                                                                                              \
+    X(indirect, "indirect light alone, albedo applied")                                                                          \
+    X(clusters, "view-sample clusters, a colour each")                                                                           \
+    X(photons, "photons as dots over the picture")                                                                               \
+    X(heat, "photons of each pixel's cluster as a heat map")                                                                     \
+    X(normals, "shading normals as colours")                                                                                     \
+    X(depth, "view depth, near is bright")                                                                                       \
+    X(albedo, "diffuse reflectance")
+
+typedef enum vit_view {
+#define X(name, meaning) VIT_VIEW_##name,
+    VIT_VIEWS(X)
+#undef X
+} vit_view;
+
+/* What to open and how; zero means the default for every field but pack and arena. */
+typedef struct vit_open_info {
+    const void *pack;          /* the whole file, 8-byte aligned; must outlive the vit */
+    size_t pack_size;          /* bytes */
+    void *arena;               /* host memory for the library, 64-byte aligned, at least vit_requirements.host_bytes */
+    size_t arena_size;         /* bytes */
+    uint32_t device;           /* index as vit_device_name() counts; 0: the first */
+    uint32_t lanes;            /* samples a work-item: 1, 8 or 16; 0: what suits the device. Changes no bit */
+    uint32_t group;            /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
+    vit_format format;
+    vit_view view;
+    uint32_t profile;          /* 1: time each pass (vit_stats.pass_ms) */
+    uint32_t max_nodes;        /* not 0: lower or raise this bound of the pack (tests, baker) */
+    uint32_t max_list;         /* likewise */
+} vit_open_info;
+
+/* One row a buffer: its name, bytes and effect, from the runtime's own table. */
+typedef struct vit_buffer_info {
+    const char *name;
+    const char *effect;        /* what calls for it */
+    uint64_t bytes;
+} vit_buffer_info;
+
+#define VIT_MAX_BUFFERS 48
+#define VIT_MAX_PASSES 64
+
+typedef struct vit_requirements {
+    uint32_t width, height;    /* pixels */
+    uint32_t frames;
+    float fps;
+    uint32_t effects;          /* VIT_EFFECT_BIT_* of the pack */
+    size_t host_bytes;         /* arena */
+    uint64_t device_bytes;     /* sum of buffers[].bytes */
+    uint32_t buffer_count;
+    vit_buffer_info buffers[VIT_MAX_BUFFERS];
+    uint32_t pass_count;       /* passes of a frame, in order */
+    const char *passes[VIT_MAX_PASSES];
+    size_t frame_bytes;        /* tightly packed framebuffer in the asked format */
+} vit_requirements;
+
+/* Exact work of the frames since vit_open, equal on every device, and times of the last frame. */
+typedef struct vit_statistics {
+    uint64_t frames;           /* frames rendered since vit_open */
+    uint32_t nodes, clusters, photons, list, pairs, largest; /* last frame: see VIT_COUNTERS in records.clh */
+    uint32_t slice_min, slice_max;                           /* last frame */
+    uint32_t max_nodes, max_list;                            /* largest wish of any frame since vit_open */
+    uint64_t dropped_samples, dropped_entries;               /* all frames: overflow of a bound */
+    uint32_t pass_count;
+    const char *pass_names[VIT_MAX_PASSES];
+    double pass_ms[VIT_MAX_PASSES];                          /* last frame; 0 unless opened with profile */
+} vit_statistics;
+
+typedef struct vit vit;
+
+/* "OpenCL platform / device / driver" of device `index`; NULL beyond the last. The text lives in `why`. */
+const char *vit_device_name(uint32_t index, vit_text *why);
+
+/* Checks the pack wholly and says what vit_open() will take. Allocates nothing; `arena` may be NULL.
+ * VIT_BAD_INPUT: the text names section and cause. VIT_USAGE: an option is out of range. */
+vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why);
+
+/* Checks again, builds the kernels, makes every buffer. VIT_FAILED: no such device, out of device memory, a build error. */
+vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why);
+
+/* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it.
+ * A NULL framebuffer renders without the transfer. */
+vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why);
+
+/* Golden XXH3-64 hash of frame `index` in the format that `v` was opened with; 0 if the pack holds none. */
+uint64_t vit_golden(const vit *v, uint32_t index);
+
+/* XXH3-64 of `bytes` bytes: how frames are hashed (tightly packed rows). */
+uint64_t vit_hash(const void *data, size_t bytes);
+
+/* Reads the counters back: not for the frame loop. */
+vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why);
+
+/* Renders frame `index` and calls `pass` after each pass with a hash of what the pass wrote. For finding the pass in which
+ * two devices part; slow. `scratch` holds the largest buffer (vit_requirements.buffers). */
+typedef void vit_trace_fn(void *user, const char *pass, uint64_t hash);
+vit_status vit_trace(vit *v, uint32_t index, void *scratch, size_t scratch_size, vit_trace_fn *pass, void *user, vit_text *why);
+
+/* Frees the device's objects; NULL is allowed. The arena stays the caller's. */
+void vit_close(vit *v);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

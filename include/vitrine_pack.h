@@ -1,0 +1,66 @@
+/* The pack, `.vit`: one baked scene in one file, usable in place from an mmap. Shared by baker and runtime; not installed.
+ *
+ *   0        64          64 + 32 n             4096-aligned
+ *   +--------+-----------+------------- ... ---+---------+- ... -+---------+
+ *   | header | table     | zero bytes          | META    |       | GOLD    |   little-endian throughout
+ *   +--------+-----------+------------- ... ---+---------+- ... -+---------+
+ *
+ *   header   char magic[8] "VITRINE\0" | u32 version | u32 sections n | u64 file size | u64 XXH3-64 of the table | 32 zero bytes
+ *   entry    char code[4] | u32 record bytes | u64 offset | u64 bytes | u64 XXH3-64 of the section      (VIT_SECTIONS order)
+ *
+ * Every section is present, exactly once and in the order of VIT_SECTIONS; an empty one has 0 bytes. Sections do not overlap;
+ * bytes between them are 0. The loader checks all of this, every hash, every count against META, every index and every float. */
+#ifndef VITRINE_PACK_H
+#define VITRINE_PACK_H
+
+#include "../kernels/records.clh"
+#include "vitrine.h"
+
+#define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
+#define VIT_PACK_VERSION 1u
+#define VIT_PACK_ALIGN 4096u
+
+/* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections. */
+#define VIT_SECTIONS(X)                                                                                                          \
+    X(META, vit_scene, 1u)                                                                                                       \
+    X(CAMS, vit_camera, s->frames)                                                                                               \
+    X(LITE, vit_light, (uint64_t)s->frames *s->lights)                                                                           \
+    X(GEOM, vit_triangle, s->triangles)                                                                                          \
+    X(ATTR, vit_attributes, s->triangles)                                                                                        \
+    X(BVHN, vit_bvh_node, s->nodes)                                                                                              \
+    X(MATL, vit_material, s->materials)                                                                                          \
+    X(TEXR, vit_texture, s->textures)                                                                                            \
+    X(MIPS, vit_mip, s->mips)                                                                                                    \
+    X(ATLS, vit_u32, s->texels)                                                                                                  \
+    X(PHOT, vit_photon, s->baked)                                                                                                \
+    X(GOLD, vit_gold, s->frames)
+
+typedef enum vit_section {
+#define X(code, type, records) VIT_SECTION_##code,
+    VIT_SECTIONS(X)
+#undef X
+    VIT_SECTION_COUNT
+} vit_section;
+
+typedef struct vit_pack_header {
+    char magic[8];
+    uint32_t version;
+    uint32_t sections;
+    uint64_t size;
+    uint64_t table_hash;
+    uint8_t zero[32];
+} vit_pack_header;
+
+typedef struct vit_pack_entry {
+    char code[4];
+    uint32_t record;
+    uint64_t offset;
+    uint64_t size;
+    uint64_t hash;
+} vit_pack_entry;
+
+/* Fills the fields of `s` that follow from others (tiles_x, tiles_y, samples, photons, key_bits, levels, level_first, mask_words):
+ * the baker calls it, the loader calls it on a copy and compares. VIT_BAD_INPUT: a count is out of range or a product overflows. */
+vit_status vit_pack_derive(vit_scene *s, vit_text *why);
+
+#endif
