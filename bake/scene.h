@@ -71,6 +71,7 @@ typedef struct scene {
     int mesh_count;
     char camera_use[SCENE_NAME]; /* name of a glTF camera that gives eye, target, up, fov; "" if none */
     double near;               /* metres, nearest depth slice; 0: auto */
+    double camera_exposure;    /* factor on radiance of the camera named by camera_use; the keys have their own */
     scene_camera_key *camera;  /* at least one unless camera_use or `automatic` */
     int camera_count;
     scene_light *lights;

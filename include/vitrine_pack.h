@@ -8,8 +8,9 @@
  *   header   char magic[8] "VITRINE\0" | u32 version | u32 sections n | u64 file size | u64 XXH3-64 of the table | 32 zero bytes
  *   entry    char code[4] | u32 record bytes | u64 offset | u64 bytes | u64 XXH3-64 of the section      (VIT_SECTIONS order)
  *
- * Every section is present, exactly once and in the order of VIT_SECTIONS; an empty one has 0 bytes. Sections do not overlap;
- * bytes between them are 0. The loader checks all of this, every hash, every count against META, every index and every float. */
+ * Every section is present, exactly once and in the order of VIT_SECTIONS; an empty one has 0 bytes. Sections do not overlap
+ * and their offsets ascend; bytes between them are 0; the file ends with the last section. The loader checks all of this,
+ * every hash, every count against META, every index and every float. */
 #ifndef VITRINE_PACK_H
 #define VITRINE_PACK_H
 
@@ -59,8 +60,10 @@ typedef struct vit_pack_entry {
     uint64_t hash;
 } vit_pack_entry;
 
-/* Fills the fields of `s` that follow from others (tiles_x, tiles_y, samples, photons, key_bits, levels, level_first, mask_words):
- * the baker calls it, the loader calls it on a copy and compares. VIT_BAD_INPUT: a count is out of range or a product overflows. */
+/* Fills the fields of `s` that follow from others (tiles_x, tiles_y, samples, photons, key_bits, key_bits_x .. key_bits_n, levels,
+ * level_first, mask_words): the baker calls it, the loader calls it on a copy and compares. All other counts and `effects` must
+ * be set before. VIT_BAD_INPUT: a count is out of range or a product overflows; the text begins with the field's name.
+ * `why` may be NULL. */
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
 
 #endif

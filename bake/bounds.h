@@ -1,0 +1,25 @@
+/* bounds.c: runs the whole path on a device and measures what no frame exceeds. Since frames have the same bits on every
+ * device, so have the measured bounds. */
+#ifndef VIT_BAKE_BOUNDS_H
+#define VIT_BAKE_BOUNDS_H
+
+#include "pack_write.h"
+
+typedef void bounds_progress_fn(void *user, const char *stage, double fraction);
+
+typedef struct bounds_input {
+    pack_sections *sections;   /* META is `scene`; GOLD is written by the runs */
+    vit_scene *scene;          /* slices and bounds are filled in */
+    vit_gold *gold;            /* scene->frames records, filled in */
+    uint32_t device;
+    int all_formats;           /* golden hashes of RGB565 and RGBA32F too: two more runs */
+    const volatile int *stop;  /* not 0: give up with VIT_FAILED, "interrupted" */
+    bounds_progress_fn *progress;
+    void *user;
+} bounds_input;
+
+/* First a run without light finds the depth slices in use; then runs with generous bounds, raised until nothing overflows, find
+ * the largest hierarchy and lists, and the golden hashes and counts. */
+vit_status bounds_measure(bounds_input *in, vit_text *why);
+
+#endif

@@ -1,0 +1,51 @@
+/* fields.c: groups of a libconfig file into plain structs, by a table of fields. A setting that no field knows is an error. */
+#ifndef VIT_BAKE_FIELDS_H
+#define VIT_BAKE_FIELDS_H
+
+#include "vitrine.h"
+#include <libconfig.h>
+#include <stdbool.h>
+
+typedef enum field_kind {
+    FIELD_NUMBER,              /* double; an integer will do */
+    FIELD_WHOLE,               /* int */
+    FIELD_AUTO,                /* double, or "auto": 0 */
+    FIELD_SWITCH,              /* bool */
+    FIELD_CHOICE,              /* bool: `allowed` is "a|b", false for a and true for b */
+    FIELD_TEXT,                /* char[SCENE_NAME] */
+    FIELD_PATH,                /* char[SCENE_PATH], resolved against the scene file's folder; "" stays "" */
+    FIELD_VECTOR,              /* double[3]: [x, y, z] or (x, y, z) */
+    FIELD_SCALE,               /* double[3]: a vector, or one number for all three */
+    FIELD_OTHER                /* known, but read by the caller */
+} field_kind;
+
+typedef struct field {
+    const char *name;
+    field_kind kind;
+    size_t offset;             /* in the struct that fields_read() fills */
+    const char *allowed;       /* numbers: "[lo, hi)" with round brackets for excluded ends; FIELD_CHOICE: "a|b" */
+} field;
+
+/* Where in the scene file we are: goes in front of every error. */
+typedef struct place {
+    const char *path;          /* the scene file */
+    const char *folder;        /* that it lies in, with its slash; "" for the current one */
+    char what[64];             /* "light 2, key 1"; "" at the top level */
+    vit_text *why;
+} place;
+
+/* Writes "file:line: what: text" into place.why, on one line whatever the text holds, and returns false.
+ * A NULL setting leaves the line out. */
+bool fields_fail(const place *at, const config_setting_t *setting, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+/* Reads every setting of `group` into `out`; what the group leaves out stays as it was.
+ * seen: bit i is set if fields[i] was there. False: place.why says why. */
+bool fields_read(const place *at, const config_setting_t *group, const field *fields, int count, void *out, uint32_t *seen);
+
+/* Member `name` of `group` as a list of groups. Absent: *list is NULL. False: it is something else, or longer than `most`. */
+bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list);
+
+/* Element `index` of a list, which must be a group. */
+bool fields_group(const place *at, const config_setting_t *list, int index, config_setting_t **group);
+
+#endif

@@ -1,0 +1,198 @@
+#include "importer.h"
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+enum { MAX_DEPTH = 256 }; /* of the node tree */
+
+/* ---- messages and memory ---- */
+
+static void one_line(char *text) {
+    for (; *text; text++)
+        if (iscntrl((unsigned char)*text))
+            *text = ' ';
+}
+
+bool import_fail(importer *im, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    const int used = snprintf(im->why->text, sizeof im->why->text, "%.200s: ", im->file);
+    if (used >= 0)
+        (void)vsnprintf(im->why->text + used, sizeof im->why->text - (size_t)used, format, args);
+    va_end(args);
+    one_line(im->why->text);
+    return false;
+}
+
+void import_warn(importer *im, const char *format, ...) {
+    char line[1024];
+    va_list args;
+    va_start(args, format);
+    const int used = snprintf(line, sizeof line, "%.400s: ", im->file);
+    if (used >= 0)
+        (void)vsnprintf(line + used, sizeof line - (size_t)used, format, args);
+    va_end(args);
+    one_line(line);
+    im->m->warnings++;
+    if (im->warn)
+        im->warn(im->user, line);
+}
+
+bool import_room(importer *im, void *block, size_t *room, size_t count, size_t size) {
+    void *old;
+    memcpy(&old, block, sizeof old);
+    if (old && count <= *room)
+        return true;
+    size_t want = *room < 8 ? 8 : *room;
+    while (want < count)
+        want += want / 2;
+    void *grown = want <= SIZE_MAX / size ? realloc(old, want * size) : NULL;
+    if (!grown)
+        return import_fail(im, "out of memory");
+    memcpy(block, &grown, sizeof grown);
+    *room = want;
+    return true;
+}
+
+/* ---- one file ---- */
+
+static void multiply(const double a[12], const struct aiMatrix4x4 *b, double out[12]) {
+    const float rows[12] = {b->a1, b->a2, b->a3, b->a4, b->b1, b->b2, b->b3, b->b4, b->c1, b->c2, b->c3, b->c4};
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++) {
+            out[4 * r + c] = c == 3 ? a[4 * r + 3] : 0.0;
+            for (int k = 0; k < 3; k++)
+                out[4 * r + c] += a[4 * r + k] * (double)rows[4 * k + c];
+        }
+}
+
+static bool add_node(importer *im, const struct aiNode *node, const double parent[12], int depth) {
+    double world[12];
+    if (depth > MAX_DEPTH)
+        return import_fail(im, "nodes are nested deeper than %d", MAX_DEPTH);
+    multiply(parent, &node->mTransformation, world);
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        if (node->mMeshes[i] >= im->ai->mNumMeshes)
+            return import_fail(im, "node '%.100s' has mesh %u of %u", node->mName.data, node->mMeshes[i], im->ai->mNumMeshes);
+        if (!import_mesh(im, im->ai->mMeshes[node->mMeshes[i]], world))
+            return false;
+    }
+    if (!import_node_camera(im, node, world) || !import_node_light(im, node, world))
+        return false;
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        if (!add_node(im, node->mChildren[i], world, depth + 1))
+            return false;
+    return true;
+}
+
+static bool has_suffix(const char *text, const char *suffix) {
+    const size_t n = strlen(text), k = strlen(suffix);
+    return n >= k && !strcasecmp(text + n - k, suffix);
+}
+
+static bool add_scene(importer *im, const scene_mesh *mesh) {
+    const uint32_t before = im->m->triangles;
+    if (!im->ai->mRootNode)
+        return import_fail(im, "has no nodes");
+    if (!add_node(im, im->ai->mRootNode, mesh->transform, 0))
+        return false;
+    im->m->not_finite += im->not_finite;
+    if (im->not_finite)
+        import_warn(im, "%llu triangles with positions that are not finite dropped", (unsigned long long)im->not_finite);
+    if (im->bad_index)
+        import_warn(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index);
+    if (im->clear)
+        import_warn(im, "%llu triangles of transparent materials are left as holes: transparency is not simulated",
+                    (unsigned long long)im->clear);
+    if (im->m->triangles == before && im->s->mesh_count == 1)
+        return import_fail(im, "has no triangle");
+    if (im->m->triangles == before)
+        import_warn(im, "has no triangle");
+    return true;
+}
+
+static bool add_file(importer *im, const scene_mesh *mesh) {
+    struct stat st;
+    if (stat(mesh->file, &st) != 0)
+        return import_fail(im, "cannot be read");
+    if (!S_ISREG(st.st_mode))
+        return import_fail(im, "is not a file");
+    /* Polygons become triangles; everything else is done here, so that it is the same for all releases of Assimp. */
+    im->ai = aiImportFile(mesh->file, aiProcess_Triangulate);
+    if (!im->ai) {
+        const char *text = aiGetErrorString();
+        return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
+    }
+    const bool fine = add_scene(im, mesh);
+    aiReleaseImport(im->ai);
+    return fine;
+}
+
+/* ---- all files ---- */
+
+static void find_box(model *m) {
+    for (int k = 0; k < 3; k++) {
+        m->lo[k] = m->hi[k] = (double)m->position[k];
+        for (size_t i = 1; i < m->vertices; i++) {
+            const double p = (double)m->position[3 * i + (size_t)k];
+            m->lo[k] = p < m->lo[k] ? p : m->lo[k];
+            m->hi[k] = p > m->hi[k] ? p : m->hi[k];
+        }
+    }
+}
+
+static void next_file(importer *im, const char *file) {
+    free(im->uses);
+    im->uses = NULL;
+    im->use_count = im->use_room = 0;
+    im->bad_index = im->not_finite = im->clear = 0;
+    im->warned_colors = false;
+    im->ai = NULL;
+    im->file = file;
+    im->gltf = has_suffix(file, ".gltf") || has_suffix(file, ".glb");
+}
+
+vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
+    importer im = {.s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path};
+    *out = (model){0};
+    im.override_used = calloc((size_t)s->material_count + 1, sizeof *im.override_used);
+    bool fine = im.override_used ? true : import_fail(&im, "out of memory");
+    for (int i = 0; fine && i < s->mesh_count; i++) {
+        next_file(&im, s->meshes[i].file);
+        fine = add_file(&im, &s->meshes[i]);
+    }
+    next_file(&im, s->path);
+    for (int i = 0; fine && i < s->material_count; i++)
+        if (!im.override_used[i])
+            import_warn(&im, "line %d: no mesh uses a material '%.100s'", s->materials[i].line, s->materials[i].name);
+    free(im.override_used);
+    if (fine && out->triangles == 0)
+        fine = import_fail(&im, "no mesh has a triangle");
+    if (fine) {
+        find_box(out);
+        return VIT_OK;
+    }
+    model_free(out);
+    return VIT_BAD_INPUT;
+}
+
+void model_free(model *m) {
+    for (int i = 0; i < m->image_count; i++)
+        free(m->images[i].rgba);
+    free(m->position);
+    free(m->normal);
+    free(m->uv);
+    free(m->index);
+    free(m->material);
+    free(m->materials);
+    free(m->images);
+    free(m->cameras);
+    free(m->lights);
+    *m = (model){0};
+}

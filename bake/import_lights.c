@@ -1,0 +1,141 @@
+#include "importer.h"
+#include <assimp/camera.h>
+#include <assimp/cimport.h>
+#include <assimp/light.h>
+#include <assimp/metadata.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static void transform_point(const double m[12], const struct aiVector3D *p, double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = m[4 * i] * (double)p->x + m[4 * i + 1] * (double)p->y + m[4 * i + 2] * (double)p->z + m[4 * i + 3];
+}
+
+/* False: the direction has no length, or is not finite. */
+static bool transform_direction(const double m[12], const struct aiVector3D *d, double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = m[4 * i] * (double)d->x + m[4 * i + 1] * (double)d->y + m[4 * i + 2] * (double)d->z;
+    const double length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+    for (int i = 0; i < 3; i++)
+        out[i] /= length;
+    return length > 0.0 && isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]);
+}
+
+static bool finite_point(const double p[3]) {
+    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
+}
+
+/* Releases of Assimp differ in what they make of glTF's vertical angle: angle * aspect, or the true horizontal angle. So a
+ * camera of known angle (1 radian, aspect 2) is sent through. */
+static bool multiplies_by_aspect(void) {
+    static const char probe[] = "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+                                "\"nodes\":[{\"name\":\"probe\",\"camera\":0}],\"cameras\":[{\"type\":\"perspective\","
+                                "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":2.0,\"znear\":0.1,\"zfar\":10.0}}]}";
+    const struct aiScene *ai = aiImportFileFromMemory(probe, sizeof probe - 1, 0, "gltf");
+    const bool multiplies = !ai || ai->mNumCameras != 1 || fabs((double)ai->mCameras[0]->mHorizontalFOV - 2.0) < 1e-3;
+    if (ai)
+        aiReleaseImport(ai);
+    return multiplies;
+}
+
+/* Vertical angle in degrees; 0 if the file states none, or nothing that a camera could have. */
+static double vertical_fov(const importer *im, const struct aiCamera *c) {
+    const double across = (double)c->mHorizontalFOV, aspect = (double)c->mAspect;
+    double up = across;
+    if (aspect > 0.0)
+        up = im->gltf && multiplies_by_aspect() ? across / aspect : 2.0 * atan(tan(0.5 * across) / aspect);
+    const double degrees = up * 180.0 / PI;
+    return degrees > 1.0 && degrees < 170.0 ? degrees : 0.0;
+}
+
+bool import_node_camera(importer *im, const struct aiNode *node, const double world[12]) {
+    static const struct aiVector3D origin = {0.0f, 0.0f, 0.0f};
+    model *m = im->m;
+    for (unsigned i = 0; i < im->ai->mNumCameras; i++) {
+        const struct aiCamera *c = im->ai->mCameras[i];
+        model_camera camera = {.fov = vertical_fov(im, c)};
+        double forward[3];
+        if (strcmp(c->mName.data, node->mName.data) != 0)
+            continue;
+        /* A glTF camera sits at its node's origin; some releases of Assimp repeat the node's translation in mPosition. */
+        transform_point(world, im->gltf ? &origin : &c->mPosition, camera.eye);
+        if (!finite_point(camera.eye) || !transform_direction(world, &c->mLookAt, forward) ||
+            !transform_direction(world, &c->mUp, camera.up)) {
+            import_warn(im, "camera '%.100s' has no direction; it is left out", c->mName.data);
+            continue;
+        }
+        for (int k = 0; k < 3; k++)
+            camera.target[k] = camera.eye[k] + forward[k];
+        (void)snprintf(camera.name, sizeof camera.name, "%.*s", SCENE_NAME - 1, c->mName.data);
+        size_t room = (size_t)m->camera_count;
+        if (!import_room(im, &m->cameras, &room, room + 1, sizeof camera))
+            return false;
+        m->cameras[m->camera_count++] = camera;
+    }
+    return true;
+}
+
+/* Assimp keeps KHR_lights_punctual's range beside the node. */
+static double light_range(const struct aiNode *node) {
+    const struct aiMetadata *data = node->mMetaData;
+    for (unsigned i = 0; data && i < data->mNumProperties; i++) {
+        const struct aiMetadataEntry *entry = &data->mValues[i];
+        if (strcmp(data->mKeys[i].data, "PBR_LightRange") != 0)
+            continue;
+        float single = 0.0f;
+        double range = 0.0;
+        if (entry->mType == AI_FLOAT) {
+            memcpy(&single, entry->mData, sizeof single);
+            range = (double)single;
+        } else if (entry->mType == AI_DOUBLE) {
+            memcpy(&range, entry->mData, sizeof range);
+        }
+        return isfinite(range) && range > 0.0 ? range : 0.0;
+    }
+    return 0.0;
+}
+
+static bool make_light(bool gltf, const struct aiNode *node, const double world[12], const struct aiLight *l,
+                       model_light *out) {
+    static const struct aiVector3D origin = {0.0f, 0.0f, 0.0f};
+    const float color[3] = {l->mColorDiffuse.r, l->mColorDiffuse.g, l->mColorDiffuse.b};
+    *out = (model_light){.spot = l->mType == aiLightSource_SPOT, .range = light_range(node), .direction = {0.0, -1.0, 0.0}};
+    transform_point(world, gltf ? &origin : &l->mPosition, out->position); /* as with cameras */
+    if (out->spot) {
+        out->inner = (double)l->mAngleInnerCone * 180.0 / PI;
+        out->outer = (double)l->mAngleOuterCone * 180.0 / PI;
+        if (!transform_direction(world, &l->mDirection, out->direction) || !(out->inner >= 0.0) ||
+            !(out->outer > 0.0 && out->outer <= 90.001) || out->inner > out->outer)
+            return false;
+        out->outer = out->outer < 90.0 ? out->outer : 90.0;
+    }
+    for (int i = 0; i < 3; i++)
+        out->power[i] = 4.0 * PI * (double)color[i];
+    return finite_point(out->position) && finite_point(out->power) && out->power[0] >= 0.0 && out->power[1] >= 0.0 &&
+           out->power[2] >= 0.0;
+}
+
+bool import_node_light(importer *im, const struct aiNode *node, const double world[12]) {
+    model *m = im->m;
+    for (unsigned i = 0; i < im->ai->mNumLights; i++) {
+        const struct aiLight *l = im->ai->mLights[i];
+        model_light light;
+        if (strcmp(l->mName.data, node->mName.data) != 0)
+            continue;
+        if ((l->mType != aiLightSource_POINT && l->mType != aiLightSource_SPOT) ||
+            !make_light(im->gltf, node, world, l, &light)) {
+            import_warn(im, "light '%.100s' is neither a point nor a spot light; it is left out", l->mName.data);
+            continue;
+        }
+        (void)snprintf(light.name, sizeof light.name, "%.*s", SCENE_NAME - 1, l->mName.data);
+        size_t room = (size_t)m->light_count;
+        if (!import_room(im, &m->lights, &room, room + 1, sizeof light))
+            return false;
+        m->lights[m->light_count++] = light;
+    }
+    return true;
+}

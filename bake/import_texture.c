@@ -1,0 +1,164 @@
+#include "importer.h"
+#include <stb/stb_image.h>
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MAX_EDGE = 16384, MAX_BYTES = 1 << 30 };
+#define MAX_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
+
+/* A missing or broken texture: an error if strict, else a warning and the plain colour. */
+static bool without(importer *im, const char *material, const char *name, const char *what) {
+    if (im->strict)
+        return import_fail(im, "material '%.100s': texture '%.200s' %s", material, name, what);
+    import_warn(im, "material '%.100s': texture '%.200s' %s; its plain colour is used", material, name, what);
+    return true;
+}
+
+static bool is_file(const char *path) {
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_size <= MAX_BYTES;
+}
+
+static int hex(char c) {
+    return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
+}
+
+/* glTF names its files by URI: "my%20wood.png". */
+static void decode_percent(char *text) {
+    char *to = text;
+    for (const char *c = text; *c; c++) {
+        const int high = c[0] == '%' ? hex(c[1]) : -1;
+        const int low = high >= 0 ? hex(c[2]) : -1;
+        *to++ = low > 0 || (low == 0 && high > 0) ? (char)(high * 16 + low) : *c;
+        if (low >= 0)
+            c += 2;
+    }
+    *to = '\0';
+}
+
+/* Texture names are relative to the mesh's folder. An absolute one comes from its author's disk: its last part is tried here.
+ */
+static bool resolve(const importer *im, const char *name, char path[SCENE_PATH]) {
+    char plain[SCENE_PATH];
+    const char *slash = strrchr(im->file, '/');
+    (void)snprintf(plain, sizeof plain, "%s", name);
+    for (char *c = plain; *c; c++)
+        if (*c == '\\')
+            *c = '/';
+    const char *relative = plain;
+    const char *last = strrchr(plain, '/');
+    if (last && (plain[0] == '/' || (isalpha((unsigned char)plain[0]) && plain[1] == ':')))
+        relative = last + 1;
+    for (int pass = 0; pass < 2; pass++) {
+        const int used = snprintf(path, SCENE_PATH, "%.*s%s", slash ? (int)(slash + 1 - im->file) : 0, im->file, relative);
+        if (used < 0 || used >= SCENE_PATH)
+            return false;
+        if (is_file(path))
+            return true;
+        decode_percent(plain + (relative - plain));
+    }
+    return false;
+}
+
+/* The whole file; NULL if it cannot be had. */
+static uint8_t *read_bytes(const char *path, int *size) {
+    FILE *file = fopen(path, "rb");
+    uint8_t *bytes = NULL;
+    long end = -1;
+    if (file && fseek(file, 0, SEEK_END) == 0 && (end = ftell(file)) > 0 && end <= MAX_BYTES && fseek(file, 0, SEEK_SET) == 0)
+        bytes = malloc((size_t)end);
+    if (bytes && fread(bytes, 1, (size_t)end, file) != (size_t)end) {
+        free(bytes);
+        bytes = NULL;
+    }
+    if (file)
+        (void)fclose(file);
+    *size = (int)end;
+    return bytes;
+}
+
+static const char *decode(const uint8_t *bytes, int size, model_image *out) {
+    int channels;
+    if (!stbi_info_from_memory(bytes, size, &out->width, &out->height, &channels))
+        return "is not an image that can be read (PNG, JPEG, TGA, BMP)";
+    if (out->width < 1 || out->height < 1 || out->width > MAX_EDGE || out->height > MAX_EDGE)
+        return "is larger than 16384 pixels";
+    out->rgba = stbi_load_from_memory(bytes, size, &out->width, &out->height, &channels, 4);
+    return out->rgba ? NULL : "is broken";
+}
+
+/* Assimp keeps embedded images as their file's bytes (height 0) or as BGRA texels. */
+static const char *decode_embedded(const struct aiTexture *t, model_image *out) {
+    if (t->mHeight == 0)
+        return t->mWidth > 0 && t->mWidth <= MAX_BYTES ? decode((const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
+    if (t->mWidth < 1 || t->mWidth > MAX_EDGE || t->mHeight > MAX_EDGE)
+        return "is larger than 16384 pixels";
+    const size_t texels = (size_t)t->mWidth * t->mHeight;
+    out->width = (int)t->mWidth;
+    out->height = (int)t->mHeight;
+    out->rgba = malloc(4 * texels);
+    for (size_t i = 0; out->rgba && i < texels; i++) {
+        out->rgba[4 * i + 0] = t->pcData[i].r;
+        out->rgba[4 * i + 1] = t->pcData[i].g;
+        out->rgba[4 * i + 2] = t->pcData[i].b;
+        out->rgba[4 * i + 3] = t->pcData[i].a;
+    }
+    return out->rgba ? NULL : "does not fit in memory";
+}
+
+static int find_image(const model *m, const char *name) {
+    for (int i = 0; i < m->image_count; i++)
+        if (!strcmp(m->images[i].name, name))
+            return i;
+    return -1;
+}
+
+/* Index of the embedded image "*7", or -1. */
+static int embedded_index(const importer *im, const char *name) {
+    if (name[0] != '*')
+        return -1;
+    char *end;
+    const long index = strtol(name + 1, &end, 10);
+    return !*end && end > name + 1 && index >= 0 && (unsigned long)index < im->ai->mNumTextures ? (int)index : -1;
+}
+
+static const char *load(const importer *im, int embedded, model_image *out) {
+    if (embedded >= 0)
+        return decode_embedded(im->ai->mTextures[embedded], out);
+    int size;
+    uint8_t *bytes = read_bytes(out->name, &size);
+    const char *wrong = bytes ? decode(bytes, size, out) : "cannot be read";
+    free(bytes);
+    return wrong;
+}
+
+bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image) {
+    model *m = im->m;
+    model_image loaded = {0};
+    const int embedded = resolved ? -1 : embedded_index(im, name);
+    *image = -1;
+    if (resolved)
+        (void)snprintf(loaded.name, sizeof loaded.name, "%s", name);
+    else if (embedded >= 0)
+        (void)snprintf(loaded.name, sizeof loaded.name, "%.*s#%d", SCENE_PATH - 16, im->file, embedded);
+    else if (!resolve(im, name, loaded.name))
+        return without(im, material, name, "is missing");
+    *image = find_image(m, loaded.name);
+    if (*image >= 0)
+        return true;
+    const char *wrong = load(im, embedded, &loaded);
+    if (wrong)
+        return without(im, material, name, wrong);
+    im->texels += (uint64_t)loaded.width * (uint64_t)loaded.height;
+    if (im->texels > MAX_TEXELS ||
+        !import_room(im, &m->images, &im->image_room, (size_t)m->image_count + 1, sizeof *m->images)) {
+        stbi_image_free(loaded.rgba);
+        return im->texels > MAX_TEXELS ? import_fail(im, "the textures have more than 2^30 texels together") : false;
+    }
+    *image = m->image_count++;
+    m->images[*image] = loaded;
+    return true;
+}

@@ -1,0 +1,73 @@
+/* import*.c: what the parts of the importer share. Private to them. */
+#ifndef VIT_BAKE_IMPORTER_H
+#define VIT_BAKE_IMPORTER_H
+
+#include "model.h"
+#include "vitrine_pack.h"
+#include <assimp/scene.h>
+
+/* One mesh file being read. */
+typedef struct importer {
+    const scene *s;
+    model *m;
+    bool strict;
+    model_warn_fn *warn;
+    void *user;
+    vit_text *why;
+
+    const char *file;          /* path as the scene gives it; every message starts with it */
+    const struct aiScene *ai;
+    bool gltf;                 /* the file is glTF: alpha modes and UV transforms follow its rules */
+    struct material_use *uses; /* materials of this file that a triangle uses */
+    size_t use_count, use_room;
+    bool *override_used;       /* one a scene material: some mesh has a material of that name */
+    size_t vertex_room, triangle_room, material_room, image_room;
+    uint64_t texels;           /* of all images so far */
+    uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
+    bool warned_colors;
+} importer;
+
+/* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
+typedef struct material_use {
+    unsigned ai_index;
+    float tint[3];             /* constant vertex colour, 1 if none */
+    model_material m;          /* image still -1 */
+    bool hole;                 /* all of it is transparent: its triangles are dropped */
+    char image[SCENE_PATH];    /* file or "*index" as Assimp gives it; "" if none */
+    bool image_resolved;       /* `image` comes from the scene file: take it as it is */
+    unsigned uv_set;
+    bool has_transform;
+    double uv[6];              /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */
+    bool warned_uv;            /* of a mesh without texture coordinates: one warning will do */
+    int index;                 /* in model.materials, -1 until a triangle uses it */
+} material_use;
+
+/* Writes "file: ..." into why->text and returns false. */
+bool import_fail(importer *im, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Gives "file: ..." to the user as a warning. */
+void import_warn(importer *im, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Makes room for `count` things of `size` bytes in *block. */
+bool import_room(importer *im, void *block, size_t *room, size_t count, size_t size);
+
+/* import_material.c: the use of material `ai_index` with vertex colour `tint`; false: out of memory.
+ * The pointer is good until the next call. */
+bool import_material(importer *im, unsigned ai_index, const float tint[3], material_use **use);
+/* Loads the use's image and appends its material to the model, on first call. */
+bool import_material_index(importer *im, material_use *use, uint32_t *index);
+
+/* import_texture.c: image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
+ * names `material` (not strict) where it is missing or broken. */
+bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image);
+
+/* import_normals.c: a unit normal for each of the 3 * triangles corners, in `normal` (9 floats a triangle).
+ * position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of memory. */
+bool import_normals(const float *position, const uint32_t *corner, size_t triangles, float *normal);
+
+/* import_mesh.c: appends the triangles of `mesh`, placed by `world` (3 x 4), to the model. */
+bool import_mesh(importer *im, const struct aiMesh *mesh, const double world[12]);
+
+/* import_lights.c: the cameras and lights that hang on `node`, whose place in the world is `world` (3 x 4). */
+bool import_node_camera(importer *im, const struct aiNode *node, const double world[12]);
+bool import_node_light(importer *im, const struct aiNode *node, const double world[12]);
+
+#endif

@@ -1,0 +1,168 @@
+#include "options.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static vit_status usage(vit_text *why, const char *option, const char *wants) {
+    snprintf(why->text, sizeof why->text, "%.100s: %s (try --help)", option, wants);
+    return VIT_USAGE;
+}
+
+static bool whole(const char *text, long least, long most, long *out) {
+    char *end;
+    if (!text || !*text)
+        return false;
+    *out = strtol(text, &end, 10);
+    return *end == 0 && *out >= least && *out <= most;
+}
+
+static bool size_of(const char *text, int *width, int *height) {
+    char end;
+    return text && sscanf(text, "%dx%d%c", width, height, &end) == 2 && *width >= 1 && *width <= 7680 && *height >= 1 && *height <= 4320;
+}
+
+static bool radius_of(const char *text, options *o) {
+    char *end;
+    o->radius_given = true;
+    o->radius = 0;
+    if (!text || strcmp(text, "auto") == 0)
+        return text != NULL;
+    o->radius = strtod(text, &end);
+    return *text && *end == 0 && o->radius > 0 && o->radius < 1e9;
+}
+
+static bool one_of(const char *text, const char *a, const char *b, const char **out) {
+    *out = text;
+    return text && (strcmp(text, a) == 0 || strcmp(text, b) == 0);
+}
+
+/* Options that are words alone. */
+static bool flag(const char *name, options *o) {
+    const struct {
+        const char *name;
+        bool *to;
+    } flags[] = {{"--explain", &o->explain},  {"--strict", &o->strict}, {"--quiet", &o->quiet}, {"--all-formats", &o->all_formats},
+                 {"--version", &o->version}, {"--help", &o->help},     {"-h", &o->help}};
+    for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++)
+        if (strcmp(name, flags[i].name) == 0)
+            return *flags[i].to = true;
+    return false;
+}
+
+/* Options with a value; false with *known: the value is wrong, `wants` says what would be right. */
+static bool valued(const char *name, const char *value, options *o, bool *known, const char **wants) {
+    const struct {
+        const char *name;
+        int *to;
+        long least, most;
+        const char *wants;
+    } numbers[] = {{"--frames", &o->frames, 1, 100000, "a number of frames, 1 to 100000"},
+                   {"--photons", &o->photons, 0, 1000000, "a number of photon paths, 0 to 1000000"},
+                   {"--bounces", &o->bounces, 1, 32, "1 to 32"},
+                   {"--tile", &o->tile, 8, 64, "8, 16, 32 or 64"},
+                   {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"}};
+    long n = 0;
+    *known = true;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (strcmp(name, numbers[i].name) == 0) {
+            *wants = numbers[i].wants;
+            bool good = whole(value, numbers[i].least, numbers[i].most, &n);
+            *numbers[i].to = (int)n;
+            return good;
+        }
+    if (strcmp(name, "-o") == 0 || strcmp(name, "--output") == 0)
+        return *wants = "a file to write", (o->output = value) != NULL;
+    if (strcmp(name, "--threads") == 0 && (*wants = "a number of threads, 0 to 1024")) {
+        bool good = whole(value, 0, 1024, &n);
+        o->threads = (unsigned)n;
+        return good;
+    }
+    if (strcmp(name, "--device") == 0 && (*wants = "a device's number (vitrine-play --list-devices)")) {
+        bool good = whole(value, 0, 1023, &n);
+        o->device = (uint32_t)n;
+        return good;
+    }
+    if (strcmp(name, "--size") == 0)
+        return *wants = "WIDTHxHEIGHT, up to 7680x4320", size_of(value, &o->width, &o->height);
+    if (strcmp(name, "--radius") == 0)
+        return *wants = "metres, or auto", radius_of(value, o);
+    if (strcmp(name, "--estimate") == 0)
+        return *wants = "list or buckets", one_of(value, "list", "buckets", &o->estimate);
+    if (strcmp(name, "--smoothing") == 0)
+        return *wants = "interpolated or raw", one_of(value, "interpolated", "raw", &o->smoothing);
+    if (strcmp(name, "--kernel") == 0)
+        return *wants = "sphere or flattened", one_of(value, "sphere", "flattened", &o->kernel);
+    return *known = false;
+}
+
+vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
+    *out = (options){.photons = -1, .normal_keys = -1};
+    for (int i = 1; i < argc; i++) {
+        const char *wants = "";
+        bool known;
+        if (argv[i][0] != '-') {
+            if (out->input)
+                return usage(why, argv[i], "one scene at a time");
+            out->input = argv[i];
+        } else if (!flag(argv[i], out)) {
+            const char *value = i + 1 < argc ? argv[i + 1] : NULL;
+            if (!valued(argv[i], value, out, &known, &wants))
+                return usage(why, argv[i], known ? wants : "unknown option");
+            i++;
+        }
+    }
+    if (out->help || out->version)
+        return VIT_OK;
+    if (!out->input)
+        return usage(why, "vitrine-bake", "which scene or mesh?");
+    if (!out->output && !out->explain)
+        return usage(why, out->input, "where to? -o FILE.vit, or --explain");
+    return VIT_OK;
+}
+
+vit_status options_apply(const options *o, scene *s, vit_text *why) {
+    scene_quality *q = &s->quality;
+    if (o->width) {
+        s->width = o->width;
+        s->height = o->height;
+    }
+    s->frames = o->frames ? o->frames : s->frames;
+    q->photons = o->photons >= 0 ? o->photons : q->photons;
+    q->bounces = o->bounces ? o->bounces : q->bounces;
+    q->tile = o->tile ? o->tile : q->tile;
+    q->radius = o->radius_given ? o->radius : q->radius;
+    q->buckets = o->estimate ? strcmp(o->estimate, "buckets") == 0 : q->buckets;
+    q->raw = o->smoothing ? strcmp(o->smoothing, "raw") == 0 : q->raw;
+    if (o->kernel)
+        q->flatten = strcmp(o->kernel, "sphere") == 0 ? 0 : q->flatten > 0 ? q->flatten : 15;
+    q->normal_keys = o->normal_keys >= 0 ? o->normal_keys != 0 : q->normal_keys;
+    if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
+        return usage(why, "--tile", "8, 16, 32 or 64");
+    return VIT_OK;
+}
+
+void options_help(void) {
+    puts("vitrine-bake: turns a scene into one packed file that vitrine-play plays.\n"
+         "\n"
+         "  vitrine-bake scene.cfg -o scene.vit      bake a scene file (bake/README.md has its grammar)\n"
+         "  vitrine-bake model.glb -o model.vit      any mesh: framed by its box, turning camera, one moving light\n"
+         "  vitrine-bake scene.cfg --explain         bake, write nothing, say what: effects and why, every buffer, total bytes\n"
+         "\n"
+         "  -o, --output FILE     the pack; written under another name first, so there is never half a pack\n"
+         "  --explain             effects, bounds, buffers; with -o the pack is written too\n"
+         "  --strict              a missing texture is an error, not a warning\n"
+         "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
+         "  --threads N           of the baker (default: all cores); changes no byte\n"
+         "  --device N            OpenCL device for measuring bounds and hashes (default 0); changes no byte\n"
+         "  --quiet               warnings and errors only\n"
+         "  --version, --help\n"
+         "\n"
+         "Instead of what the scene file says:\n"
+         "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
+         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1\n"
+         "\n"
+         "Exit codes:");
+#define X(name, value, meaning) printf("  %d  %s\n", value, meaning);
+    VIT_STATUSES(X)
+#undef X
+}

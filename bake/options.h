@@ -1,0 +1,26 @@
+/* options.c: the baker's command line. */
+#ifndef VIT_BAKE_OPTIONS_H
+#define VIT_BAKE_OPTIONS_H
+
+#include "scene.h"
+
+typedef struct options {
+    const char *input, *output;
+    bool explain, strict, quiet, all_formats, help, version;
+    unsigned threads;          /* 0: all cores */
+    uint32_t device;
+    /* Overrides of the scene file; 0, NULL or negative: none. */
+    int width, height, frames, photons, bounces, tile;
+    double radius;             /* 0 with radius_given: auto */
+    bool radius_given;
+    const char *estimate, *smoothing, *kernel;
+    int normal_keys;           /* -1: as the scene says */
+} options;
+
+/* VIT_USAGE: why->text names the option. */
+vit_status options_parse(int argc, char **argv, options *out, vit_text *why);
+void options_help(void);
+/* Puts the overrides into the scene. VIT_USAGE. */
+vit_status options_apply(const options *o, scene *s, vit_text *why);
+
+#endif

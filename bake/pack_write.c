@@ -1,0 +1,184 @@
+/* pack_write.c: lays the sections out as one file image, and puts that image under its name whole or not at all. */
+#include "pack_write.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static vit_status fail(vit_status status, vit_text *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static vit_status fail(vit_status status, vit_text *why, const char *format, ...) {
+    if (why) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(why->text, sizeof why->text, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}
+
+/* Fills codes, record sizes, offsets and sizes; `total` is the file's size. */
+static vit_status lay_out(const vit_scene *s, vit_pack_entry table[VIT_SECTION_COUNT], uint64_t *total, vit_text *why) {
+    const struct {
+        char code[5];
+        uint32_t record;
+        uint64_t records;
+    } sections[VIT_SECTION_COUNT] = {
+#define X(code, type, records) {#code, sizeof(type), records},
+        VIT_SECTIONS(X)
+#undef X
+    };
+    uint64_t end = sizeof(vit_pack_header) + VIT_SECTION_COUNT * sizeof(vit_pack_entry);
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        const uint64_t offset = (end + VIT_PACK_ALIGN - 1) / VIT_PACK_ALIGN * VIT_PACK_ALIGN; /* end < 2^63: see below */
+        if (sections[i].records > (SIZE_MAX / 2 - offset) / sections[i].record)
+            return fail(VIT_BAD_INPUT, why, "pack: section %s: %llu records are too many", sections[i].code,
+                        (unsigned long long)sections[i].records);
+        table[i] =
+            (vit_pack_entry){.record = sections[i].record, .offset = offset, .size = sections[i].records * sections[i].record};
+        memcpy(table[i].code, sections[i].code, sizeof table[i].code);
+        end = offset + table[i].size;
+    }
+    *total = end;
+    return VIT_OK;
+}
+
+vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vit_text *why) {
+    *bytes = NULL;
+    *size = 0;
+    if (!in->data[VIT_SECTION_META])
+        return fail(VIT_BAD_INPUT, why, "pack: section META: missing");
+    vit_pack_entry table[VIT_SECTION_COUNT];
+    uint64_t total = 0;
+    vit_status status = lay_out(in->data[VIT_SECTION_META], table, &total, why);
+    if (status != VIT_OK)
+        return status;
+    unsigned char *image = calloc(1, (size_t)total); /* zero: the gaps are part of the format */
+    if (!image)
+        return fail(VIT_FAILED, why, "pack: out of memory for %llu bytes", (unsigned long long)total);
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        if (table[i].size > 0 && !in->data[i]) {
+            free(image);
+            return fail(VIT_BAD_INPUT, why, "pack: section %.4s: missing", table[i].code);
+        }
+        if (table[i].size > 0)
+            memcpy(image + table[i].offset, in->data[i], (size_t)table[i].size);
+        table[i].hash = vit_hash(image + table[i].offset, (size_t)table[i].size);
+    }
+    const vit_pack_header header = {.magic = VIT_PACK_MAGIC,
+                                    .version = VIT_PACK_VERSION,
+                                    .sections = VIT_SECTION_COUNT,
+                                    .size = total,
+                                    .table_hash = vit_hash(table, sizeof table)};
+    memcpy(image, &header, sizeof header);
+    memcpy(image + sizeof header, table, sizeof table);
+    *bytes = image;
+    *size = (size_t)total;
+    return VIT_OK;
+}
+
+/* The one variable of the product that outlives a call: a signal handler gets no argument, and what it has to remove is the
+ * file that pack_save() is writing at that moment. `armed` is set only while `path` is complete. */
+static struct {
+    volatile sig_atomic_t armed;
+    char path[PATH_MAX];
+} temporary;
+
+void pack_abandon(void) {
+    if (temporary.armed)
+        unlink(temporary.path); /* async-signal-safe, as POSIX lists it */
+}
+
+/* Creates "PATH.tmp-PID-N" with the least free N; never opens a file that is there. Returns -1 and errno. */
+static int create_temporary(const char *path) {
+    for (int n = 0; n < 100; n++) {
+        const int length = snprintf(temporary.path, sizeof temporary.path, "%s.tmp-%ld-%d", path, (long)getpid(), n);
+        if (length < 0 || (size_t)length >= sizeof temporary.path) {
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        temporary.armed = 1; /* before open: a signal between the two must not leave the file behind */
+        const int file = open(temporary.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file >= 0)
+            return file;
+        temporary.armed = 0;
+        if (errno != EEXIST && errno != EINTR)
+            return -1;
+    }
+    return -1;
+}
+
+static bool write_all(int file, const unsigned char *bytes, size_t size) {
+    const size_t most = (size_t)1 << 30; /* some systems refuse a write of 2 GiB */
+    while (size > 0) {
+        const ssize_t written = write(file, bytes, size < most ? size : most);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return false;
+        bytes += written;
+        size -= (size_t)written;
+    }
+    return true;
+}
+
+/* The new name lasts over a power cut only when the folder is on the disk as well. A folder that cannot be opened for
+ * reading, or a file system without the notion (EINVAL), does not make the pack bad. */
+static bool sync_folder(const char *path) {
+    char folder[PATH_MAX] = ".";
+    const char *slash = strrchr(path, '/');
+    if (slash)
+        snprintf(folder, sizeof folder, "%.*s", slash == path ? 1 : (int)(slash - path), path);
+    const int directory = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory < 0)
+        return true;
+    const bool synced = fsync(directory) == 0 || errno == EINVAL;
+    const int error = errno;
+    close(directory);
+    errno = error;
+    return synced;
+}
+
+/* The cause must not fall off the end of the line, so a long path loses its beginning. */
+static vit_status fail_file(vit_text *why, const char *path, const char *step, int error) {
+    const size_t length = strlen(path), most = sizeof why->text / 2;
+    return fail(VIT_FAILED, why, "%s%s: %s%s%s", length > most ? "..." : "", length > most ? path + length - most : path, step,
+                error ? ": " : "", error ? strerror(error) : "");
+}
+
+/* Returns the step that failed, with errno, or NULL. Closes `file` in any case. */
+static const char *fill_and_close(int file, const void *bytes, size_t size) {
+    const char *failed = !write_all(file, bytes, size) ? "write" : fsync(file) != 0 ? "fsync" : NULL;
+    const int error = errno;
+    if (close(file) != 0 && !failed)
+        return "close";
+    errno = error;
+    return failed;
+}
+
+vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why) {
+    /* rename() would replace a device, and leave whoever reads a pipe waiting. */
+    struct stat there;
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+        return fail_file(why, path, "not a regular file", 0);
+    const int file = create_temporary(path);
+    if (file < 0)
+        return fail_file(why, path, "cannot create a file there", errno);
+    const char *failed = fill_and_close(file, bytes, size);
+    if (!failed && rename(temporary.path, path) != 0)
+        failed = "rename";
+    const int error = errno;
+    if (failed)
+        unlink(temporary.path);
+    temporary.armed = 0;
+    if (failed)
+        return fail_file(why, path, failed, error);
+    return sync_folder(path) ? VIT_OK : fail_file(why, path, "fsync of the folder", errno);
+}

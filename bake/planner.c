@@ -1,0 +1,187 @@
+#include "planner.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PACKET 16u
+
+/* Photons that the disc of the radius holds on average if the radius is "auto". With fewer the estimate is mottled, with more it
+ * leaks round corners; MEASURED: leaks dominate from about 1.5 m on in a building the size of Sponza. */
+#define AUTO_PHOTONS 12.0
+
+static bool gives_photons(const scene *s, uint32_t light) {
+    return s->automatic || s->lights[light].photons;
+}
+
+/* Mean power over the path, W summed over channels: what a light's share of the paths follows. */
+static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
+    double sum = 0;
+    for (uint32_t f = 0; f < frames; f++) {
+        const vit_light *l = &t->lights[(size_t)f * t->light_count + light];
+        sum += ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) * (1.0 - (double)l->cos_outer);
+    }
+    return sum / frames;
+}
+
+static vit_status share_paths(const scene *s, tracks *t, plan *p, vit_text *why) {
+    double total = 0;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < t->light_count; i++)
+        total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
+    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0))
+        return VIT_OK;
+    for (uint32_t i = 0; i < t->light_count; i++) {
+        double power = gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
+        uint32_t paths = power > 0 ? (uint32_t)ceil(s->quality.photons * (power / total) / PACKET) * PACKET : 0;
+        if (paths == 0)
+            continue;
+        if (t->still[i]) {
+            p->baked_paths[i] = paths;
+            continue;
+        }
+        for (uint32_t f = 0; f < (uint32_t)s->frames; f++) {
+            vit_light *l = &t->lights[(size_t)f * t->light_count + i];
+            l->path_first = first;
+            l->path_count = paths;
+        }
+        first += paths;
+    }
+    p->scene.paths = first;
+    if (first > 1000000) {
+        snprintf(why->text, sizeof why->text, "quality.photons: at most 1000000 paths in all, with %u lights got %u", t->light_count, first);
+        return VIT_BAD_INPUT;
+    }
+    return VIT_OK;
+}
+
+static void plan_materials(const model *m, const atlas *a, plan *p) {
+    for (int i = 0; i < m->material_count; i++) {
+        const model_material *from = &m->materials[i];
+        vit_material *to = &p->materials[i];
+        memcpy(to->albedo, from->albedo, sizeof to->albedo);
+        memcpy(to->emission, from->emission, sizeof to->emission);
+        to->texture = a->material_texture ? a->material_texture[i] : VIT_NONE;
+        to->cutout = from->cutoff > 0 && to->texture != VIT_NONE;
+    }
+}
+
+static uint32_t effects_of_lights(const scene *s, const tracks *t) {
+    uint32_t e = t->light_count > 0 ? VIT_EFFECT_BIT_LIGHTS : 0;
+    for (size_t i = 0; i < (size_t)s->frames * t->light_count; i++) {
+        const vit_light *l = &t->lights[i];
+        if (l->kind == VIT_LIGHT_SPOT)
+            e |= VIT_EFFECT_BIT_SPOT;
+        if (l->inv_range2 > 0 || l->falloff == VIT_FALLOFF_WINDOW)
+            e |= VIT_EFFECT_BIT_RANGE;
+    }
+    return e;
+}
+
+static uint32_t effects_of_materials(const model *m, const plan *p) {
+    uint32_t e = 0;
+    for (int i = 0; i < m->material_count; i++) {
+        const vit_material *v = &p->materials[i];
+        if (m->materials[i].triangles == 0)
+            continue;
+        if (v->texture != VIT_NONE)
+            e |= VIT_EFFECT_BIT_TEXTURES;
+        if (v->cutout)
+            e |= VIT_EFFECT_BIT_CUTOUT;
+        if (v->emission[0] > 0 || v->emission[1] > 0 || v->emission[2] > 0)
+            e |= VIT_EFFECT_BIT_EMISSION;
+    }
+    return e;
+}
+
+static uint32_t effects_of_quality(const scene *s, const plan *p) {
+    bool baked = false;
+    for (uint32_t i = 0; i < p->scene.lights; i++)
+        baked |= p->baked_paths[i] > 0;
+    if (p->scene.paths == 0 && !baked)
+        return 0;
+    const scene_quality *q = &s->quality;
+    uint32_t e = VIT_EFFECT_BIT_PHOTONS | (q->buckets ? VIT_EFFECT_BIT_BUCKETS : VIT_EFFECT_BIT_LIST);
+    e |= p->scene.paths > 0 ? VIT_EFFECT_BIT_TRACED : 0;
+    e |= q->buckets && q->raw ? VIT_EFFECT_BIT_RAW_BUCKETS : 0;
+    e |= q->flatten > 0 ? VIT_EFFECT_BIT_FLATTENED : 0;
+    e |= q->normal_keys ? VIT_EFFECT_BIT_NORMAL_KEYS : 0;
+    return e;
+}
+
+/* METHODS.md P (2.6): slices as deep as they are wide. */
+static float slice_scale(const scene *s, const tracks *t) {
+    double rows = (double)s->height / s->quality.tile;
+    return (float)(1.0 / log2(1.0 + 2.0 * t->tan_half_fov / rows));
+}
+
+/* Area that light can reach, m2 (a side counts for itself). */
+static double lit_area(const reach *r) {
+    double lit = r->area - r->dark_front - r->dark_back;
+    return lit > 0 ? lit : r->area;
+}
+
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, plan *out,
+                     vit_text *why) {
+    memset(out, 0, sizeof *out);
+    vit_scene *c = &out->scene;
+    out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
+    out->baked_paths = calloc(t->light_count + 1u, sizeof *out->baked_paths);
+    if (!out->materials || !out->baked_paths) {
+        plan_free(out);
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    plan_materials(m, a, out);
+    c->width = (uint32_t)s->width;
+    c->height = (uint32_t)s->height;
+    c->frames = (uint32_t)s->frames;
+    c->fps = (float)s->fps;
+    c->tile = (uint32_t)s->quality.tile;
+    c->triangles = m->triangles;
+    c->nodes = b->node_count;
+    c->materials = (uint32_t)m->material_count;
+    c->textures = a->texture_count;
+    c->mips = a->mip_count;
+    c->texels = a->texel_count;
+    c->lights = t->light_count;
+    c->bounces = (uint32_t)s->quality.bounces;
+    c->ray_offset = g->ray_offset;
+    c->box_pad = b->box_pad;
+    c->slice_near = (float)t->near;
+    c->slice_scale = slice_scale(s, t);
+    c->slice_count = 4096;
+    for (int k = 0; k < 3; k++)
+        c->background[k] = (float)s->background[k];
+    vit_status status = share_paths(s, t, out, why);
+    if (status != VIT_OK) {
+        plan_free(out);
+        return status;
+    }
+    c->effects = effects_of_lights(s, t) | effects_of_materials(m, out) | effects_of_quality(s, out);
+    if (r->dark_sides > 0)
+        c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
+    if (c->effects & VIT_EFFECT_BIT_PHOTONS) {
+        double stored = (double)s->quality.photons * (s->quality.bounces - 1);
+        out->radius_auto = sqrt(AUTO_PHOTONS * lit_area(r) / (3.14159265358979 * stored));
+        c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : out->radius_auto);
+        c->flatten = (float)s->quality.flatten;
+    }
+    return VIT_OK;
+}
+
+void plan_free(plan *p) {
+    free(p->materials);
+    free(p->baked_paths);
+    memset(p, 0, sizeof *p);
+}
+
+void plan_explain(const plan *p, plan_line_fn *line, void *user) {
+    char text[256];
+#define X(bit, name, macro, why)                                                                                               \
+    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_EFFECT_BIT_##macro ? "called for since" : "not called for, would be if", \
+             why);                                                                                                             \
+    line(user, text);
+    VIT_EFFECTS(X)
+#undef X
+}

@@ -1,0 +1,27 @@
+/* planner.c: which effects the scene calls for, who gets how many photon paths, and the pack's constants. */
+#ifndef VIT_BAKE_PLANNER_H
+#define VIT_BAKE_PLANNER_H
+
+#include "atlas.h"
+#include "bvh.h"
+#include "reach.h"
+#include "tracks.h"
+
+typedef struct plan {
+    vit_scene scene;           /* META but for slices and bounds, which bounds.c measures */
+    vit_material *materials;   /* model.material_count records */
+    uint32_t *baked_paths;     /* a light: paths to bake (still lights), 0 for the others */
+    double radius_auto;        /* m; what "auto" gives, whatever the scene file says */
+} plan;
+
+/* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights in proportion to their mean
+ * power, in multiples of 16 (a packet of paths has one light), at least 16 each. */
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, plan *out,
+                     vit_text *why);
+void plan_free(plan *p);
+
+/* One line an effect: "called for" or not, and why. */
+typedef void plan_line_fn(void *user, const char *line);
+void plan_explain(const plan *p, plan_line_fn *line, void *user);
+
+#endif

@@ -1,0 +1,301 @@
+/* Dark sides, by a small radiosity solution over the sides of triangles:
+ *   1. rays from the lights, over all frames and directions, give each side its direct irradiance;
+ *   2. every side shoots GATHER_RAYS rays about its normal and notes which sides they find;
+ *   3. E = direct + albedo * mean of E over what the rays found, repeated until light has gone everywhere (Jacobi);
+ *   4. sides below the threshold ask again, with more rays of their own and rays towards the lights: triangles too small
+ *      for 1 and 2 are not darkened by bad luck.
+ *
+ * Sums over threads are integers, everything else is computed by one thread in a fixed order: the result does not depend on
+ * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray.
+ * Irradiance is in units of the lights' mean total power a m2. */
+#include "reach.h"
+#include "reach_rays.h"
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#define CHUNK 256u /* batches that a thread takes at a time */
+#define LIGHT_RAYS (1u << 20)
+#define LIGHT_STREAM 0xffffffffu
+#define GATHER_RAYS 16u /* one batch */
+#define ASK_BATCHES 2u  /* step 4: batches of gathering rays */
+#define ITERATIONS 40   /* 0.8^40 = 1e-4 */
+#define MAX_THREADS 256u
+#define FLUX_ONE 0x1p56 /* fixed point of direct flux: all sides' sum is at most the lights' power, 1 */
+
+typedef struct search {
+    const tracks *t;
+    geometry *g;
+    uint32_t frames, sides;
+    ray_scene rays;
+    double power;        /* of all lights, mean over the frames, W */
+    atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of `power` */
+    uint32_t *found;     /* GATHER_RAYS a side */
+    float *direct, *irradiance, *next_irradiance;
+    float threshold;
+    atomic_uint next; /* chunk */
+    atomic_ullong shot;
+} search;
+
+typedef void job(search *s, uint32_t item);
+
+typedef struct work {
+    search *s;
+    job *run;
+    uint32_t items;
+} work;
+
+static void *worker(void *user) {
+    const work *w = user;
+    for (;;) {
+        const uint64_t first = (uint64_t)atomic_fetch_add(&w->s->next, 1) * CHUNK;
+        for (uint64_t i = first; i < first + CHUNK && i < w->items; i++)
+            w->run(w->s, (uint32_t)i);
+        if (first + CHUNK >= w->items)
+            return NULL;
+    }
+}
+
+/* Runs `run` for all items on `threads` threads, this one included; on fewer if the system gives no more. */
+static void run_all(search *s, job *run, uint32_t items, unsigned threads) {
+    pthread_t pool[MAX_THREADS];
+    unsigned started = 0;
+    work w = {s, run, items};
+    atomic_store(&s->next, 0);
+    while (started + 1 < threads && pthread_create(pool + started, NULL, worker, &w) == 0)
+        started++;
+    worker(&w);
+    for (unsigned i = 0; i < started; i++)
+        pthread_join(pool[i], NULL);
+}
+
+static void cast(search *s, ray_batch *b) {
+    ray_scene_cast(&s->rays, b);
+    atomic_fetch_add_explicit(&s->shot, b->count, memory_order_relaxed);
+}
+
+static double mean_intensity(const vit_light *l) {
+    return ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) / 3.0;
+}
+
+static double solid_angle(const vit_light *l) {
+    return 6.283185307179586 * (l->kind == VIT_LIGHT_SPOT ? 1.0 - (double)l->cos_outer : 2.0);
+}
+
+/* Even over the light's sphere or cone. */
+static vec light_direction(const vit_light *l, float u, float v) {
+    const bool spot = l->kind == VIT_LIGHT_SPOT;
+    const float z = 1.0f - u * (spot ? 1.0f - l->cos_outer : 2.0f), r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), phi = 6.2831853f * v;
+    const vec n = spot ? (vec){l->direction[0], l->direction[1], l->direction[2]} : (vec){0.0f, 0.0f, 1.0f};
+    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a, x = r * cosf(phi), y = r * sinf(phi);
+    return (vec){(1.0f + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
+                 -sign * n.x * x - n.y * y + n.z * z};
+}
+
+/* Step 1, a batch of one light's rays, in its place of one frame. */
+static void shoot_from_light(search *s, uint32_t item) {
+    const uint32_t batches = LIGHT_RAYS / RAY_BATCH, light = item % s->t->light_count;
+    const uint32_t frame = (uint32_t)((uint64_t)item * s->frames / batches);
+    const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
+    const double power = mean_intensity(l) * solid_angle(l);
+    if (!(power > 0.0))
+        return;
+    ray_batch b = {.count = RAY_BATCH};
+    for (uint32_t i = 0; i < RAY_BATCH; i++) {
+        const uint32_t ray = item * RAY_BATCH + i;
+        b.origin[i] = (vec){l->position[0], l->position[1], l->position[2]};
+        b.direction[i] = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
+        b.reach[i] = INFINITY;
+    }
+    cast(s, &b);
+    const double share = power / s->power * s->t->light_count / LIGHT_RAYS;
+    for (uint32_t i = 0; i < RAY_BATCH; i++)
+        if (b.side[i] != RAY_NOTHING)
+            atomic_fetch_add_explicit(s->flux + b.side[i], (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
+}
+
+static void aim_batch(const search *s, uint32_t side, uint32_t batch, ray_batch *b) {
+    const vec n = side_normal(s->g, side);
+    b->count = RAY_BATCH;
+    for (uint32_t i = 0; i < RAY_BATCH; i++) {
+        const uint32_t ray = batch * RAY_BATCH + i;
+        b->origin[i] = side_point(s->g, side, sequence(side, ray, 0), sequence(side, ray, 1));
+        b->direction[i] = cosine_direction(n, sequence(side, ray, 2), sequence(side, ray, 3));
+        b->reach[i] = INFINITY;
+    }
+}
+
+/* Step 2. */
+static void gather(search *s, uint32_t side) {
+    ray_batch b;
+    aim_batch(s, side, 0, &b);
+    cast(s, &b);
+    for (uint32_t i = 0; i < GATHER_RAYS; i++)
+        s->found[(size_t)side * GATHER_RAYS + i] = b.side[i];
+    const double area = triangle_area(s->g->triangles + side / 2);
+    s->direct[side] = (float)((double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE / area);
+    s->irradiance[side] = s->direct[side];
+}
+
+static float found_irradiance(const search *s, const uint32_t *found, uint32_t count) {
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < count; i++)
+        sum += found[i] == RAY_NOTHING ? 0.0f : s->irradiance[found[i]];
+    return sum;
+}
+
+/* Step 3. */
+static void reflect_once(search *s, uint32_t side) {
+    const float sum = found_irradiance(s, s->found + (size_t)side * GATHER_RAYS, GATHER_RAYS);
+    s->next_irradiance[side] = s->direct[side] + REACH_ALBEDO / (float)GATHER_RAYS * sum;
+}
+
+static void solve(search *s, unsigned threads) {
+    for (int i = 0; i < ITERATIONS; i++) {
+        run_all(s, reflect_once, s->sides, threads);
+        float *last = s->irradiance;
+        s->irradiance = s->next_irradiance;
+        s->next_irradiance = last;
+    }
+}
+
+/* The side's direct irradiance by a batch of shadow rays, each to some light in some frame. */
+static float ask_lights(search *s, uint32_t side) {
+    const vec n = side_normal(s->g, side);
+    ray_batch b = {.count = RAY_BATCH};
+    float wanted[RAY_BATCH], sum = 0.0f;
+    for (uint32_t i = 0; i < RAY_BATCH; i++) {
+        const uint32_t light = (uint32_t)(sequence(side, i, 2) * (float)s->t->light_count);
+        const uint32_t frame = (uint32_t)(sequence(side, i, 3) * (float)s->frames);
+        const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
+        const vec o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
+        const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};
+        const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
+        const vec unit = {to.x / d, to.y / d, to.z / d};
+        const float cosine = unit.x * n.x + unit.y * n.y + unit.z * n.z;
+        const float axis = -(unit.x * l->direction[0] + unit.y * l->direction[1] + unit.z * l->direction[2]);
+        const bool inside = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
+        wanted[i] = inside && cosine > 0.0f ? (float)(mean_intensity(l) / s->power) * cosine / (d * d) : 0.0f;
+        b.origin[i] = o;
+        b.direction[i] = cosine > 0.0f ? unit : n;
+        b.reach[i] = d;
+    }
+    cast(s, &b);
+    for (uint32_t i = 0; i < RAY_BATCH; i++)
+        sum += b.hit[i] ? 0.0f : wanted[i];
+    return sum * (float)s->t->light_count / (float)RAY_BATCH;
+}
+
+/* Step 4. */
+static void ask_again(search *s, uint32_t side) {
+    float e = s->irradiance[side];
+    if (e < s->threshold)
+        e += ask_lights(s, side);
+    float sum = 0.0f;
+    for (uint32_t batch = 1; batch <= ASK_BATCHES && e < s->threshold; batch++) {
+        ray_batch b;
+        aim_batch(s, side, batch, &b);
+        cast(s, &b);
+        sum += found_irradiance(s, b.side, RAY_BATCH);
+        e = fmaxf(e, REACH_ALBEDO * sum / (float)(batch * RAY_BATCH));
+    }
+    s->next_irradiance[side] = e;
+}
+
+static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, void *user) {
+    run_all(s, shoot_from_light, LIGHT_RAYS / RAY_BATCH, threads);
+    if (progress)
+        progress(user, 0.1);
+    run_all(s, gather, s->sides, threads);
+    if (progress)
+        progress(user, 0.5);
+    solve(s, threads);
+    double mean = 0.0, area = 0.0;
+    for (uint32_t side = 0; side < s->sides; side++) {
+        const double a = triangle_area(s->g->triangles + side / 2);
+        mean += a * (double)s->irradiance[side];
+        area += a;
+    }
+    s->threshold = (float)((double)REACH_THRESHOLD * mean / area);
+    if (progress)
+        progress(user, 0.6);
+    run_all(s, ask_again, s->sides, threads);
+    if (progress)
+        progress(user, 1.0);
+}
+
+static void flag_dark_sides(const search *s, reach *out) {
+    out->rays = atomic_load(&s->shot);
+    for (uint32_t side = 0; side < s->sides; side++) {
+        const double area = triangle_area(s->g->triangles + side / 2);
+        out->area += area;
+        if (s->next_irradiance[side] >= s->threshold)
+            continue;
+        *(side & 1 ? &out->dark_back : &out->dark_front) += area;
+        s->g->attributes[side / 2].material |= side & 1 ? VIT_SIDE_DARK_BACK : VIT_SIDE_DARK_FRONT;
+        out->dark_sides++;
+    }
+}
+
+/* Mean over the frames of all lights' power, W. */
+static double total_power(const tracks *t, uint32_t frames) {
+    double sum = 0.0;
+    for (size_t i = 0; i < (size_t)frames * t->light_count; i++)
+        sum += mean_intensity(t->lights + i) * solid_angle(t->lights + i);
+    return frames ? sum / frames : 0.0;
+}
+
+static double seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static unsigned thread_count(unsigned asked) {
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    const unsigned threads = asked ? asked : cores > 0 ? (unsigned)cores : 1;
+    return threads < MAX_THREADS ? threads : MAX_THREADS;
+}
+
+static bool allocate(search *s) {
+    s->flux = calloc(s->sides, sizeof *s->flux);
+    s->found = malloc((size_t)s->sides * GATHER_RAYS * sizeof *s->found);
+    s->direct = malloc(s->sides * sizeof *s->direct);
+    s->irradiance = malloc(s->sides * sizeof *s->irradiance);
+    s->next_irradiance = malloc(s->sides * sizeof *s->next_irradiance);
+    return s->flux && s->found && s->direct && s->irradiance && s->next_irradiance;
+}
+
+static void release(search *s) {
+    ray_scene_close(&s->rays);
+    free(s->flux);
+    free(s->found);
+    free(s->direct);
+    free(s->irradiance);
+    free(s->next_irradiance);
+}
+
+vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, geometry *g, unsigned threads,
+                            reach_progress_fn *progress, void *user, reach *out, vit_text *why) {
+    const double start = seconds();
+    *out = (reach){0};
+    search s = {.t = t, .g = g, .frames = frames, .sides = 2 * m->triangles, .power = total_power(t, frames)};
+    if (!(s.power > 0.0))
+        return VIT_OK;
+    threads = thread_count(threads);
+    vit_status status = VIT_OK;
+    if (!allocate(&s) || !ray_scene_open(m, g, threads, &s.rays)) {
+        snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");
+        status = VIT_FAILED;
+    } else {
+        run_steps(&s, threads, progress, user);
+        flag_dark_sides(&s, out);
+    }
+    release(&s);
+    out->seconds = seconds() - start;
+    return status;
+}

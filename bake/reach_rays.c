@@ -1,0 +1,170 @@
+/* Rays for reach.c. Starting points and hits keep away from edges: a ray that starts within rounding of a neighbour, or a hit
+ * on a silhouette, would connect the two sides of a closed wall. */
+#include "reach_rays.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#if VIT_EMBREE == 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#define INSET 4.0f    /* ray offsets that starting points keep from a triangle's edges, if it is large enough */
+#define GRAZING 1e-3f /* a hit at a smaller cosine, or nearer to an edge (barycentric), tells no side */
+#define EDGE 1e-4f
+
+static vec scaled_sum(vec a, float s, vec b) {
+    return (vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static float dot(vec a, vec b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static vec unit(vec a) {
+    const float l = sqrtf(dot(a, a));
+    return (vec){a.x / l, a.y / l, a.z / l};
+}
+
+static vec vec_of(const float p[3]) {
+    return (vec){p[0], p[1], p[2]};
+}
+
+static uint32_t hash(uint32_t x) { /* PCG (O'Neill 2014), as the kernels' */
+    x = x * 747796405u + 2891336453u;
+    x = ((x >> ((x >> 28) + 4u)) ^ x) * 277803737u;
+    return (x >> 22) ^ x;
+}
+
+/* The four-dimensional R sequence (Roberts 2018), shifted by a hash. */
+float sequence(uint32_t stream, uint32_t i, uint32_t d) {
+    static const uint32_t alpha[4] = {0xdb4f0b91u, 0xbbe05633u, 0xa0f2ec75u, 0x89e18285u}; /* 2^32 / phi4^(d + 1) */
+    return (float)((hash(stream * 4u + d) + (i + 1u) * alpha[d]) >> 8) * 0x1p-24f;
+}
+
+double triangle_area(const vit_triangle *t) {
+    return 0.5 * sqrt((double)t->nx * (double)t->nx + (double)t->ny * (double)t->ny + (double)t->nz * (double)t->nz);
+}
+
+static vec triangle_normal(const vit_triangle *t) {
+    const float m = fmaxf(fabsf(t->nx), fmaxf(fabsf(t->ny), fabsf(t->nz))); /* first scaled: tiny and huge triangles alike */
+    return unit((vec){t->nx / m, t->ny / m, t->nz / m});
+}
+
+vec side_normal(const geometry *g, uint32_t side) {
+    const vec n = triangle_normal(g->triangles + side / 2);
+    return side & 1 ? (vec){-n.x, -n.y, -n.z} : n;
+}
+
+static float distance(const float a[3], const float b[3]) {
+    const vec d = scaled_sum(vec_of(a), -1.0f, vec_of(b));
+    return sqrtf(dot(d, d));
+}
+
+vec side_point(const geometry *g, uint32_t side, float u, float v) {
+    const vit_triangle *t = g->triangles + side / 2;
+    const float inset = INSET * g->ray_offset, twice_area = (float)(2.0 * triangle_area(t)), root = sqrtf(u);
+    const float random[3] = {1.0f - root, root * (1.0f - v), root * v};
+    const float edge[3] = {distance(t->v1, t->v2), distance(t->v2, t->v0), distance(t->v0, t->v1)};
+    float margin[3], rest = 1.0f; /* barycentric: a share of the height above each edge */
+    for (int k = 0; k < 3; k++) {
+        margin[k] = fminf(0.25f, inset * edge[k] / twice_area);
+        rest -= margin[k];
+    }
+    vec p = scaled_sum((vec){0.0f, 0.0f, 0.0f}, margin[0] + rest * random[0], vec_of(t->v0));
+    p = scaled_sum(p, margin[1] + rest * random[1], vec_of(t->v1));
+    p = scaled_sum(p, margin[2] + rest * random[2], vec_of(t->v2));
+    return scaled_sum(p, g->ray_offset, side_normal(g, side));
+}
+
+vec cosine_direction(vec n, float u, float v) {
+    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a; /* basis: Duff et al. 2017 */
+    const vec t = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, w = {b, sign + n.y * n.y * a, -n.y};
+    const float r = sqrtf(u), phi = 6.2831853f * v, height = sqrtf(fmaxf(0.0f, 1.0f - u));
+    vec d = scaled_sum((vec){0.0f, 0.0f, 0.0f}, r * cosf(phi), t);
+    d = scaled_sum(d, r * sinf(phi), w);
+    return unit(scaled_sum(d, fmaxf(height, 0.02f), n)); /* not along its own surface */
+}
+
+/* primID is the triangle; a cut-out one shrinks to a point, which no ray hits. */
+static bool add_triangles(const model *m, ray_scene *s) {
+    RTCGeometry mesh = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->g->triangles, 0, sizeof(vit_triangle) / 3,
+                               3 * (size_t)m->triangles);
+    uint32_t *index =
+        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof *index, m->triangles);
+    for (uint32_t i = 0; index && i < m->triangles; i++) {
+        const bool hole = m->materials[s->g->attributes[i].material & VIT_MATERIAL_INDEX].cutoff > 0.0f;
+        for (uint32_t k = 0; k < 3; k++)
+            index[3 * i + k] = 3 * i + (hole ? 0 : k);
+    }
+    if (index) {
+        rtcCommitGeometry(mesh);
+        rtcAttachGeometry(s->scene, mesh);
+        rtcCommitScene(s->scene);
+    }
+    rtcReleaseGeometry(mesh);
+    return index && rtcGetDeviceError(s->device) == RTC_ERROR_NONE;
+}
+
+bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out) {
+    char config[32];
+    snprintf(config, sizeof config, "threads=%u", threads);
+    *out = (ray_scene){.g = g, .device = rtcNewDevice(config)};
+    if (!out->device)
+        return false;
+    out->scene = rtcNewScene(out->device);
+    if (out->scene)
+        rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
+    if (out->scene && add_triangles(m, out))
+        return true;
+    ray_scene_close(out);
+    return false;
+}
+
+void ray_scene_close(ray_scene *s) {
+    if (s->scene)
+        rtcReleaseScene(s->scene);
+    if (s->device)
+        rtcReleaseDevice(s->device);
+    *s = (ray_scene){0};
+}
+
+void ray_scene_cast(const ray_scene *s, ray_batch *b) {
+    struct RTCRayHit16 r;
+    _Alignas(64) int valid[RAY_BATCH];
+    for (uint32_t i = 0; i < RAY_BATCH; i++) {
+        const uint32_t k = i < b->count ? i : 0;
+        valid[i] = i < b->count ? -1 : 0;
+        r.ray.org_x[i] = b->origin[k].x;
+        r.ray.org_y[i] = b->origin[k].y;
+        r.ray.org_z[i] = b->origin[k].z;
+        r.ray.dir_x[i] = b->direction[k].x;
+        r.ray.dir_y[i] = b->direction[k].y;
+        r.ray.dir_z[i] = b->direction[k].z;
+        r.ray.tnear[i] = r.ray.time[i] = 0.0f;
+        r.ray.tfar[i] = b->reach[k];
+        r.ray.mask[i] = ~0u;
+        r.ray.id[i] = r.ray.flags[i] = 0;
+        r.hit.geomID[i] = r.hit.primID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+#if VIT_EMBREE == 4
+    rtcIntersect16(valid, s->scene, &r, NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect16(valid, s->scene, &context, &r);
+#endif
+    for (uint32_t i = 0; i < b->count; i++) {
+        b->side[i] = RAY_NOTHING;
+        b->hit[i] = r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        if (!b->hit[i])
+            continue;
+        const float cosine = dot(triangle_normal(s->g->triangles + r.hit.primID[i]), b->direction[i]);
+        const float u = r.hit.u[i], v = r.hit.v[i];
+        if (fabsf(cosine) >= GRAZING && fminf(u, fminf(v, 1.0f - u - v)) >= EDGE)
+            b->side[i] = 2 * r.hit.primID[i] + (cosine > 0.0f);
+    }
+}

@@ -1,0 +1,232 @@
+#include "scene_reader.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MAX_FILE = 16 << 20, MAX_INCLUDES = 10 }; /* bytes a file; libconfig's own depth of includes */
+
+static const field top_fields[] = {
+    {"name", FIELD_TEXT, offsetof(scene, name), NULL},
+    {"background", FIELD_VECTOR, offsetof(scene, background), RADIOMETRIC},
+    {"output", FIELD_OTHER, 0, NULL},
+    {"meshes", FIELD_OTHER, 0, NULL},
+    {"camera", FIELD_OTHER, 0, NULL},
+    {"lights", FIELD_OTHER, 0, NULL},
+    {"materials", FIELD_OTHER, 0, NULL},
+    {"quality", FIELD_OTHER, 0, NULL},
+};
+
+static const field output_fields[] = {
+    {"width", FIELD_WHOLE, offsetof(scene, width), "[1, 7680]"},
+    {"height", FIELD_WHOLE, offsetof(scene, height), "[1, 4320]"},
+    {"fps", FIELD_NUMBER, offsetof(scene, fps), "(0, 1000]"},
+    {"frames", FIELD_WHOLE, offsetof(scene, frames), "[1, 100000]"},
+};
+
+typedef struct quality_group {
+    scene_quality q;
+    bool flattened;
+} quality_group;
+
+enum { QUALITY_FLATTEN };
+static const field quality_fields[] = {
+    [QUALITY_FLATTEN] = {"flatten", FIELD_NUMBER, offsetof(quality_group, q.flatten), "(0, 1e4]"},
+    {"photons", FIELD_WHOLE, offsetof(quality_group, q.photons), "[0, 1000000]"},
+    {"bounces", FIELD_WHOLE, offsetof(quality_group, q.bounces), "[1, 32]"},
+    {"radius", FIELD_AUTO, offsetof(quality_group, q.radius), "(0, 1e6]"},
+    {"tile", FIELD_WHOLE, offsetof(quality_group, q.tile), "[8, 64]"},
+    {"estimate", FIELD_CHOICE, offsetof(quality_group, q.buckets), "list|buckets"},
+    {"smoothing", FIELD_CHOICE, offsetof(quality_group, q.raw), "interpolated|raw"},
+    {"kernel", FIELD_CHOICE, offsetof(quality_group, flattened), "sphere|flattened"},
+    {"normal_keys", FIELD_SWITCH, offsetof(quality_group, q.normal_keys), NULL},
+};
+
+void reader_at(reader *r, const char *group, int index) {
+    if (index < 0)
+        (void)snprintf(r->at.what, sizeof r->at.what, "%s", group);
+    else
+        (void)snprintf(r->at.what, sizeof r->at.what, "%s %d", group, index + 1);
+}
+
+bool reader_allocate(reader *r, void *block, int count, size_t size) {
+    void *room = calloc((size_t)count + 1, size);
+    if (!room)
+        return fields_fail(&r->at, NULL, "out of memory");
+    memcpy(block, &room, sizeof room);
+    return true;
+}
+
+static bool read_output(reader *r, const config_setting_t *root) {
+    const config_setting_t *group = config_setting_get_member(root, "output");
+    uint32_t seen;
+    reader_at(r, "output", -1);
+    return !group || fields_read(&r->at, group, output_fields, FIELD_COUNT(output_fields), r->s, &seen);
+}
+
+static bool read_quality(reader *r, const config_setting_t *root) {
+    const config_setting_t *group = config_setting_get_member(root, "quality");
+    quality_group g = {.q = r->s->quality};
+    uint32_t seen = 0;
+    reader_at(r, "quality", -1);
+    if (group && !fields_read(&r->at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
+        return false;
+    if (g.q.tile & (g.q.tile - 1))
+        return fields_fail(&r->at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
+    if (g.q.raw && !g.q.buckets)
+        return fields_fail(&r->at, group, "smoothing \"raw\" needs estimate \"buckets\"");
+    if ((seen & FIELD_BIT(QUALITY_FLATTEN)) && !g.flattened)
+        return fields_fail(&r->at, group, "'flatten' needs kernel \"flattened\"");
+    if (g.flattened && !(seen & FIELD_BIT(QUALITY_FLATTEN)))
+        g.q.flatten = 15.0;
+    r->s->quality = g.q;
+    return true;
+}
+
+/* Name between the quotes of an @include line; false if the line is none. */
+static bool include_name(const char *line, char *name, size_t room) {
+    while (*line == ' ' || *line == '\t')
+        line++;
+    if (strncmp(line, "@include", 8) != 0)
+        return false;
+    line += 8;
+    while (*line == ' ' || *line == '\t')
+        line++;
+    const char *end = *line == '"' ? strchr(line + 1, '"') : NULL;
+    if (!end || (size_t)(end - line) > room)
+        return false;
+    (void)snprintf(name, room, "%.*s", (int)(end - line - 1), line + 1);
+    return true;
+}
+
+static bool check_file(const place *at, const char *path, int depth);
+
+/* libconfig hands includes to a scanner that ends the whole process on a folder or a device: look first. */
+static bool check_includes(const place *at, const char *path, FILE *file, int depth) {
+    char *line = NULL;
+    size_t size = 0;
+    bool fine = true;
+    for (unsigned number = 1; fine && getline(&line, &size, file) >= 0; number++) {
+        char name[SCENE_PATH], full[2 * SCENE_PATH];
+        if (!include_name(line, name, sizeof name))
+            continue;
+        struct stat st;
+        const int used = snprintf(full, sizeof full, "%s%s", at->folder, name);
+        const bool below = name[0] && name[0] != '/' && used > 0 && used < SCENE_PATH;
+        if (!below || depth >= MAX_INCLUDES) {
+            (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: %s", path, number,
+                           below ? "@include goes deeper than 10 files" : "@include takes a path below the scene's folder");
+            fine = false;
+        } else if (stat(full, &st) == 0) { /* a missing one is libconfig's to report, unless a comment holds it */
+            fine = check_file(at, full, depth + 1);
+        }
+    }
+    free(line);
+    return fine;
+}
+
+static bool check_file(const place *at, const char *path, int depth) {
+    struct stat st;
+    place here = *at;
+    here.path = path;
+    if (stat(path, &st) != 0)
+        return fields_fail(&here, NULL, "cannot be read");
+    if (!S_ISREG(st.st_mode))
+        return fields_fail(&here, NULL, "is not a file");
+    if (st.st_size > MAX_FILE)
+        return fields_fail(&here, NULL, "is larger than %d MiB", MAX_FILE >> 20);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return fields_fail(&here, NULL, "cannot be read");
+    const bool fine = check_includes(at, path, file, depth);
+    (void)fclose(file);
+    return fine;
+}
+
+static bool parse(const place *at, config_t *config) {
+    config_set_include_dir(config, at->folder[0] ? at->folder : ".");
+    if (config_read_file(config, at->path) == CONFIG_TRUE)
+        return true;
+    const char *text = config_error_text(config);
+    const char *file = config_error_file(config);
+    /* In [ ] all elements have one type, which nobody expects. */
+    const bool mixed = text && strstr(text, "mismatched element type");
+    (void)snprintf(at->why->text, sizeof at->why->text, "%s:%d: %s%s", file ? file : at->path, config_error_line(config),
+                   text ? text : "cannot be read", mixed ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)" : "");
+    for (char *c = at->why->text; *c; c++)
+        if (iscntrl((unsigned char)*c))
+            *c = '?';
+    return false;
+}
+
+static bool read_top(reader *r, const config_setting_t *root) {
+    uint32_t seen;
+    return fields_read(&r->at, root, top_fields, FIELD_COUNT(top_fields), r->s, &seen) && read_output(r, root) &&
+           reader_meshes(r, root) && reader_camera(r, root) && reader_lights(r, root) && reader_materials(r, root) &&
+           read_quality(r, root);
+}
+
+static void set_defaults(scene *s) {
+    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0};
+    s->quality = (scene_quality){.photons = 17000, .bounces = 4, .tile = 32};
+}
+
+static vit_status copy_path(scene *s, const char *path, vit_text *why) {
+    if (strlen(path) < sizeof s->path) {
+        memcpy(s->path, path, strlen(path) + 1);
+        return VIT_OK;
+    }
+    (void)snprintf(why->text, sizeof why->text, "%.100s...: the path is longer than %d bytes", path, SCENE_PATH - 1);
+    return VIT_BAD_INPUT;
+}
+
+vit_status scene_read(const char *path, scene *out, vit_text *why) {
+    char folder[SCENE_PATH];
+    set_defaults(out);
+    if (copy_path(out, path, why) != VIT_OK)
+        return VIT_BAD_INPUT;
+    memcpy(folder, out->path, sizeof folder);
+    char *slash = strrchr(folder, '/');
+    folder[slash ? slash + 1 - folder : 0] = '\0';
+    reader r = {.s = out, .at = {.path = out->path, .folder = folder, .why = why}};
+    if (!check_file(&r.at, path, 0))
+        return VIT_BAD_INPUT;
+    config_t config;
+    config_init(&config);
+    const bool fine = parse(&r.at, &config) && read_top(&r, config_root_setting(&config));
+    config_destroy(&config);
+    if (fine)
+        return VIT_OK;
+    scene_free(out);
+    return VIT_BAD_INPUT;
+}
+
+vit_status scene_for_mesh(const char *path, scene *out, vit_text *why) {
+    set_defaults(out);
+    if (copy_path(out, path, why) != VIT_OK)
+        return VIT_BAD_INPUT;
+    out->meshes = calloc(1, sizeof *out->meshes);
+    if (!out->meshes) {
+        (void)snprintf(why->text, sizeof why->text, "%.300s: out of memory", path);
+        return VIT_FAILED;
+    }
+    const char *slash = strrchr(path, '/');
+    (void)snprintf(out->name, sizeof out->name, "%.*s", SCENE_NAME - 1, slash ? slash + 1 : path);
+    memcpy(out->meshes[0].file, out->path, sizeof out->path);
+    for (int i = 0; i < 3; i++)
+        out->meshes[0].transform[i * 5] = 1.0;
+    out->mesh_count = 1;
+    out->automatic = true;
+    return VIT_OK;
+}
+
+void scene_free(scene *s) {
+    for (int i = 0; i < s->light_count; i++)
+        free(s->lights[i].keys);
+    free(s->meshes);
+    free(s->camera);
+    free(s->lights);
+    free(s->materials);
+    *s = (scene){0};
+}

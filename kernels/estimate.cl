@@ -1,0 +1,178 @@
+/* Pass 8: irradiance from photons, a density estimate: E = sum of Phi K(d), K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons
+ * that arrive from the front. METHODS.md P, step 9 and "We correct". vit_photon.power is Phi 2 / (pi r^2). */
+#if VIT_EFFECT_PHOTONS
+
+/* Does a photon count for a sample? The place for acceptance tests: so far, that it arrives from the front of the surface. */
+static inline li estimate_accepts(lv3 normal, lv3 direction)
+{
+    return L_LT(lv3_dot(normal, direction), (lf)0);
+}
+
+/* What the sum of a sample is divided by: the part of the kernel's area that lies on surfaces. So far the whole disc. */
+static inline lv3 estimate_normalise(lv3 sum)
+{
+    return sum;
+}
+
+#if VIT_EFFECT_LIST
+kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global const uint *keys, global const float *position, global const uint *normal,
+                          global const uint *masks, global const uint *prefix, global const uint *list_first, global const uint *list_count,
+                          global const uint *list, global const vit_photon *photons, global float *indirect)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    li key = L_AS_INT(L_LOAD(keys + first));
+    li rest = L_GE(key, (li)0);
+    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    if (l_any(rest)) {
+        lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+        while (l_any(rest)) {
+            uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
+            li own = rest & L_EQ(key, (li)(int)k);
+            rest &= ~own;
+            uint cluster = cluster_of(scene, masks, prefix, k);
+            if (cluster >= max_nodes)
+                continue;
+            global const uint *at = list + list_first[cluster], *end = at + list_count[cluster];
+            lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+            for (; at < end; at++) {
+                global const vit_photon *q = photons + *at;
+                lv3 o = lv3_sub(p, lv3_load(q->position));
+                lf d2 = lv3_dot(o, o);
+#if VIT_EFFECT_FLATTENED
+                lf off = lv3_dot(o, s);
+                d2 = fma(off * off, (lf)scene->flatten, d2);
+#endif
+                lf w = l_max(fma(d2, (lf)-q->inv_radius2, (lf)1), (lf)0);
+                w = l_sel(estimate_accepts(s, lv3_load(q->direction)), w, (lf)0);
+                sum = lv3_along(sum, lv3_load(q->power), w);
+            }
+            total = lv3_sel(own, estimate_normalise(sum), total);
+        }
+    }
+    lv3_store_planes(total, indirect, n, first);
+}
+#endif
+
+#if VIT_EFFECT_BUCKETS
+#if VIT_EFFECT_RAW_BUCKETS
+/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. */
+kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
+                             global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
+                             global const int *bounds, global const float *buckets, global float *indirect)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    li key = L_AS_INT(L_LOAD(keys + first));
+    li rest = L_GE(key, (li)0);
+    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 s = l_decode_normal(L_LOAD(normal + first));
+    while (l_any(rest)) {
+        uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
+        li own = rest & L_EQ(key, (li)(int)k);
+        rest &= ~own;
+        uint cluster = cluster_of(scene, masks, prefix, k);
+        if (cluster >= max_nodes)
+            continue;
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+        for (uint b = 0; b < BUCKETS; b++) {
+            global const float *power = buckets + ((size_t)cluster * BUCKETS + b) * 4;
+            if (!(power[3] > 0))
+                continue;
+            uint face = b / 9;
+            float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
+            float x = face < 2 ? sign : u, y = face < 2 ? u : face < 4 ? sign : v, z = face < 4 ? v : sign;
+            float unit = 1.0f / sqrt(fma(z, z, fma(y, y, x * x)));
+            lf w = 2.0f * l_max(lv3_dot(s, lv3_set((lf)(x * unit), (lf)(y * unit), (lf)(z * unit))), (lf)0);
+            sum = lv3_along(sum, lv3_load(power), w);
+        }
+        total = lv3_sel(own, estimate_normalise(sum), total);
+    }
+    lv3_store_planes(total, indirect, n, first);
+}
+#else
+/* Irradiance of a cluster on the front of each of the six axes, x, y, z in scalar planes, blended by the squared components of
+ * the normal (an ambient cube: McTaggart, GDC 2004): exact for axis-parallel surfaces, continuous for all. */
+static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
+{
+    lv3 r = lv3_set((lf)0, (lf)0, (lf)0);
+    lf x2 = s.x * s.x, y2 = s.y * s.y, z2 = s.z * s.z;
+    for (uint o = 0; o < 8; o++) {
+        li front_x = L_LT(s.x, (lf)0) ^ (li)((o & 1) ? 0 : -1), front_y = L_LT(s.y, (lf)0) ^ (li)((o & 2) ? 0 : -1),
+           front_z = L_LT(s.z, (lf)0) ^ (li)((o & 4) ? 0 : -1);
+        lf w = l_sel(front_x, x2, (lf)0) + l_sel(front_y, y2, (lf)0) + l_sel(front_z, z2, (lf)0);
+        r = lv3_along(r, lv3_load(octants + o * 4), w);
+    }
+    return r;
+}
+
+/* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by how
+ * near their centres are to the sample's tangent plane. Own tile and slice are always among them. */
+kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
+                             global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
+                             global const int *bounds, global const float *buckets, global float *indirect)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    li key = L_AS_INT(L_LOAD(keys + first));
+    li rest = L_GE(key, (li)0);
+    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    if (l_any(rest)) {
+        global const vit_camera *camera = cameras + frame;
+        lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+        li x, y;
+        l_pixel(scene, first, &x, &y);
+        lf edge = (lf)(1.0f / (float)scene->tile);
+        lf fx = fma(L_FROM_INT(x) + 0.5f, edge, (lf)-0.5f), fy = fma(L_FROM_INT(y) + 0.5f, edge, (lf)-0.5f);
+        lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), (lf)scene->slice_near);
+        lf fz = l_log2(depth / scene->slice_near) * scene->slice_scale - (float)scene->slice_first - 0.5f;
+        fz = l_min(l_max(fz, (lf)-0.5f), (lf)((float)scene->slice_count - 0.5f));
+        lf ix = floor(fx), iy = floor(fy), iz = floor(fz);
+        fx -= ix;
+        fy -= iy;
+        fz -= iz;
+        li z0 = L_TRUNC(iz);
+        /* Tiles are at least 8 pixels wide, so the lanes' 4 x 4 pixels lie between the same tile centres. */
+        int x0 = l_reduce_min(L_TRUNC(ix)), y0 = l_reduce_min(L_TRUNC(iy));
+        lf cell = depth * (1.0f / 16.0f) ;
+        while (l_any(rest)) {
+            /* Lanes between the same slices, and with the same direction bits in their keys. */
+            int z = l_reduce_max(l_sel_i(rest, z0, (li)-1000000));
+            li own = rest & L_EQ(z0, (li)z);
+            uint direction = 0;
+#if VIT_EFFECT_NORMAL_KEYS
+            direction = (uint)l_reduce_max(l_sel_i(own, key & 63, (li)0));
+            own &= L_EQ(key & 63, (li)(int)direction);
+#endif
+            rest &= ~own;
+            lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+            lf weights = (lf)0;
+            for (int corner = 0; corner < 8; corner++) {
+                int cx = x0 + (corner & 1), cy = y0 + ((corner >> 1) & 1), cz = z + (corner >> 2);
+                if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y || cz >= (int)scene->slice_count)
+                    continue;
+                uint k = direction | key_spread(scene, 0, scene->key_bits_x, (uint)cx) | key_spread(scene, 1, scene->key_bits_y, (uint)cy) |
+                         key_spread(scene, 2, scene->key_bits_z, (uint)cz);
+                uint cluster = cluster_if_any(scene, masks, prefix, k);
+                if (cluster >= max_nodes)
+                    continue;
+                splat_box box = splat_node(bounds, max_nodes, cluster);
+                lv3 c = lv3_set((lf)(0.5f * (box.lo[0] + box.hi[0])), (lf)(0.5f * (box.lo[1] + box.hi[1])), (lf)(0.5f * (box.lo[2] + box.hi[2])));
+                lf off = lv3_dot(lv3_sub(c, p), s) / cell;
+                lf w = l_max(1.0f - off * off, (lf)0.01f);
+                w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
+                sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
+                weights += w;
+            }
+            lf scale = l_sel(L_GT(weights, (lf)0), 1.0f / l_max(weights, (lf)1e-20f), (lf)0);
+            total = lv3_sel(own, estimate_normalise(lv3_scale(sum, scale)), total);
+        }
+    }
+    lv3_store_planes(total, indirect, n, first);
+}
+#endif
+#endif
+#endif

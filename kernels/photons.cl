@@ -1,0 +1,123 @@
+/* Pass 4: photon paths of moving lights. METHODS.md P, step 3. A photon is stored at every hit but the first, which is direct light.
+ * Slot of path p's k-th stored photon: k * paths + p, so that no order of execution shows. */
+#if VIT_EFFECT_TRACED
+
+/* Footprint of a photon for the choice of mip level: wide, since its light spreads over its radius anyway. */
+#define PHOTON_CONE 0.02f
+
+/* Emission: path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square of directions: exactly
+ * uniform, stratified, and neighbouring lanes start alike. weight: the light's intensity in that direction over that on its axis. */
+static inline lv3 photon_emission(global const vit_light *light, lu path, lf *weight)
+{
+    uint count = light->path_count;
+    lu i = path - light->path_first; /* < 2^20, so that i * 2^32 / count can be had in two exact steps */
+    lu high = (i << 12) / count, rest = (i << 12) - high * count;
+    lu r = l_pcg(path * 2u + 0x9e3779b9u);
+    lu curve = (high << 20) + (((rest << 10) / count) << 10) + mul_hi(r, (lu)(0xffffffffu / count));
+    lf u = (L_FROM_INT(L_AS_INT(l_even_bits(curve))) + l_unit_float(l_pcg(r))) * (1.0f / 65536.0f);
+    lf v = (L_FROM_INT(L_AS_INT(l_even_bits(curve >> 1))) + l_unit_float(l_pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
+    /* Uniform over the cone cos >= cos_outer, about the axis. */
+    lf c = fma(u, (lf)(light->cos_outer - 1.0f), (lf)1), s = sqrt(l_max(1.0f - c * c, (lf)0)), sp, cp;
+    l_sincos_turn(v, &sp, &cp);
+    lv3 axis = light->kind == VIT_LIGHT_SPOT ? lv3_load(light->direction) : lv3_set((lf)0, (lf)1, (lf)0);
+    ray_packet frame = ray_make(axis, axis);
+    lv3 d = lv3_unit(lv3_along(lv3_along(lv3_scale(axis, c), frame.ax, s * cp), frame.ay, s * sp));
+    *weight = light_cone(light, lv3_scale(d, (lf)-1));
+    return d;
+}
+
+/* Cosine-distributed direction about n from two random numbers. */
+static inline lv3 photon_bounce(lv3 n, lf a, lf b)
+{
+    lf s = sqrt(a), c = sqrt(l_max(1.0f - a, (lf)0)), sp, cp;
+    l_sincos_turn(b, &sp, &cp);
+    ray_packet frame = ray_make(n, n);
+    return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
+}
+
+/* Writes VIT_LANES photons from `slot` on. power: W, incident. */
+static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, float radius)
+{
+    float v[12 * VIT_LANES];
+    float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * VIT_INV_PI * inv;
+    L_STORE(p.x, v);
+    L_STORE(p.y, v + VIT_LANES);
+    L_STORE(p.z, v + 2 * VIT_LANES);
+    L_STORE(d.x, v + 3 * VIT_LANES);
+    L_STORE(d.y, v + 4 * VIT_LANES);
+    L_STORE(d.z, v + 5 * VIT_LANES);
+    L_STORE(power.x * scale, v + 6 * VIT_LANES);
+    L_STORE(power.y * scale, v + 7 * VIT_LANES);
+    L_STORE(power.z * scale, v + 8 * VIT_LANES);
+    L_STORE(l_sel(valid, (lf)r2, (lf)-1), v + 9 * VIT_LANES);
+    for (int i = 0; i < VIT_LANES; i++) {
+        global vit_photon *q = photons + slot + i;
+        q->position[0] = v[i];
+        q->position[1] = v[VIT_LANES + i];
+        q->position[2] = v[2 * VIT_LANES + i];
+        q->radius2 = v[9 * VIT_LANES + i];
+        q->direction[0] = v[3 * VIT_LANES + i];
+        q->direction[1] = v[4 * VIT_LANES + i];
+        q->direction[2] = v[5 * VIT_LANES + i];
+        q->inv_radius2 = inv;
+        q->power[0] = v[6 * VIT_LANES + i];
+        q->power[1] = v[7 * VIT_LANES + i];
+        q->power[2] = v[8 * VIT_LANES + i];
+        q->zone = 0;
+    }
+}
+
+/* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
+kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global vit_photon *photons,
+                         volatile global uint *counters)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
+    if (first >= paths)
+        return;
+    global const vit_light *light = lights + (size_t)frame * scene->lights;
+    for (uint i = 0; i < scene->lights; i++, light++)
+        if (light->path_count > 0 && first >= light->path_first && first < light->path_first + light->path_count)
+            break;
+    lu path = (lu)first + L_AS_UINT(L_INDEX);
+    li alive = (li)0;
+    lv3 o = lv3_set((lf)0, (lf)0, (lf)0), d = o, power = o;
+    if (light < lights + (size_t)(frame + 1) * scene->lights) {
+        lf weight;
+        o = lv3_load(light->position);
+        d = photon_emission(light, path, &weight);
+        lf share = weight * (2.0f * VIT_PI * (1.0f - light->cos_outer) / (float)light->path_count);
+        power = lv3_scale(lv3_load(light->intensity), share);
+        alive = L_LT(path, (lu)(light->path_first + light->path_count)) & L_GT(share, (lf)0);
+    }
+    uint stored = 0;
+    for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
+        lf t = (lf)3e38f;
+        li triangle = (li)0;
+        surface s;
+        s.position = o;
+        if (l_any(alive)) {
+            ray_packet r = ray_make(o, d);
+            ray_nearest(RAY_SCENE, &r, alive, &t, &triangle);
+            alive &= L_NE(triangle, (li)(int)VIT_NONE);
+            t = l_sel(alive, t, (lf)1);
+            s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, (lf)PHOTON_CONE);
+        }
+        if (hit_number > 0) {
+            photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius);
+            stored += popcount(l_bits(alive));
+        }
+        if (hit_number + 1 == scene->bounces || !l_any(alive))
+            continue; /* slots of dead paths are still written, as empty */
+#if VIT_EFFECT_RANGE
+        if (hit_number == 0) /* the same light that direct lighting sees */
+            power = lv3_scale(power, light_falloff(light, t * t) * (t * t));
+#endif
+        power = lv3_set(power.x * s.albedo.x, power.y * s.albedo.y, power.z * s.albedo.z);
+        alive &= L_GT(power.x + power.y + power.z, (lf)0);
+        lu seed = l_pcg(path ^ l_pcg((lu)(hit_number * 2u + 1u)));
+        d = photon_bounce(s.face, l_unit_float(seed), l_unit_float(l_pcg(seed)));
+        o = s.position;
+    }
+    atomic_add(counters + VIT_COUNTER_photons, stored);
+}
+#endif

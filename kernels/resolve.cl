@@ -1,0 +1,197 @@
+/* Pass 11: light to pixels. METHODS.md P, step 10: radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
+ * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format. */
+
+/* IEC 61966-2-1 curve, 0..1. Error below 1e-6 (tests/numeric). */
+static inline lf srgb_curve(lf x)
+{
+    lf c = l_min(l_max(x, (lf)0), (lf)1);
+    lf low = c * 12.92f;
+    lf high = fma(l_exp2(l_log2(l_max(c, (lf)1e-4f)) * (1.0f / 2.4f)), (lf)1.055f, (lf)-0.055f);
+    return l_sel(L_LE(c, (lf)0.0031308f), low, high);
+}
+
+static inline li to_steps(lf x, float steps)
+{
+    return L_TRUNC(fma(x, (lf)steps, (lf)0.5f));
+}
+
+/* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
+static inline void write_pixels(global const vit_scene *scene, li x, li y, li inside, lv3 c, global uchar *framebuffer)
+{
+    int px[VIT_LANES], py[VIT_LANES], in[VIT_LANES];
+    L_STORE(x, px);
+    L_STORE(y, py);
+    L_STORE(inside, in);
+#if VIT_FORMAT == 2
+    float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
+    L_STORE(c.x, r);
+    L_STORE(c.y, g);
+    L_STORE(c.z, b);
+    for (int i = 0; i < VIT_LANES; i++)
+        if (in[i])
+            vstore4((float4)(r[i], g[i], b[i], 1.0f), (size_t)py[i] * scene->width + (size_t)px[i], (global float *)framebuffer);
+#else
+    int v[VIT_LANES];
+#if VIT_FORMAT == 1
+    L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
+    global ushort *out = (global ushort *)framebuffer;
+#else
+    L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
+    global uint *out = (global uint *)framebuffer;
+#endif
+    for (int i = 0; i < VIT_LANES; i++)
+        if (in[i])
+            out[(size_t)py[i] * scene->width + (size_t)px[i]] = v[i];
+#endif
+}
+
+/* Black, blue, green, yellow, red, white over 0..1. */
+static inline lv3 heat_colour(lf h)
+{
+    lf x = l_min(l_max(h, (lf)0), (lf)1) * 5.0f;
+    lf zero = (lf)0, one = (lf)1;
+    lf r = l_min(l_max(x - 2.0f, zero), one);
+    lf g = l_min(l_max(x - 1.0f, zero), one) - l_min(l_max(x - 3.0f, zero), one) + l_max(x - 4.0f, zero);
+    lf b = l_min(x, one) - l_min(l_max(x - 1.0f, zero), one) + l_max(x - 4.0f, zero);
+    return lv3_set(r, g, b);
+}
+
+kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
+                    global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
+                    uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
+                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global uchar *framebuffer)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    li x, y;
+    l_pixel(scene, first, &x, &y);
+    li inside = l_inside(scene, x, y);
+    if (!l_any(inside))
+        return;
+    float exposure = cameras[frame].exposure;
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), (li)(int)VIT_NONE);
+    lv3 zero = lv3_set((lf)0, (lf)0, (lf)0), c = zero;
+    int display = 0; /* is c a display value already? */
+#if VIT_VIEW == 0 || VIT_VIEW == 1 || VIT_VIEW == 4
+    c = lv3_load_planes(direct, n, first);
+#endif
+#if VIT_EFFECT_PHOTONS && (VIT_VIEW == 0 || VIT_VIEW == 2 || VIT_VIEW == 4)
+    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), (lf)VIT_INV_PI), e = lv3_load_planes(indirect, n, first);
+    c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
+#endif
+#if VIT_EFFECT_PHOTONS && (VIT_VIEW == 3 || VIT_VIEW == 5)
+    lu key = L_LOAD(keys + first);
+    li has = L_NE(L_AS_INT(key), (li)(int)VIT_NONE);
+#if VIT_VIEW == 3
+    lu h = l_pcg(key);
+    lf shade = L_FROM_INT(L_AS_INT(L_LOAD(normal + first) >> 8) & 0xff) * (0.3f / 255.0f) + 0.6f;
+    c = lv3_scale(lv3_set(L_FROM_INT(L_AS_INT(h & 255u)), L_FROM_INT(L_AS_INT((h >> 8) & 255u)), L_FROM_INT(L_AS_INT((h >> 16) & 255u))),
+                  shade * (1.0f / 255.0f));
+#else
+    uint k[VIT_LANES];
+    float count[VIT_LANES];
+    L_STORE(key, k);
+    for (int i = 0; i < VIT_LANES; i++) {
+        uint cluster = k[i] == VIT_NONE ? VIT_NONE : cluster_of(scene, masks, prefix, k[i]);
+        count[i] = cluster < max_nodes ? (float)list_count[cluster] : 0.0f;
+    }
+    c = heat_colour(l_log2(L_LOAD(count) + 1.0f) * (1.0f / 12.0f)); /* white from 4095 photons on */
+#endif
+    c = lv3_sel(has, c, zero);
+    display = 1;
+#endif
+#if VIT_VIEW == 6
+    lv3 s = l_decode_normal(L_LOAD(normal + first));
+    c = lv3_sel(hit, lv3_set(fma(s.x, (lf)0.5f, (lf)0.5f), fma(s.y, (lf)0.5f, (lf)0.5f), fma(s.z, (lf)0.5f, (lf)0.5f)), zero);
+    display = 1;
+#endif
+#if VIT_VIEW == 7
+    lf near = (lf)(8.0f * scene->slice_near), shown = near / (near + L_LOAD(hit_distance + first)) ;
+    c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
+    display = 1;
+#endif
+#if VIT_VIEW == 8
+    c = l_decode_albedo(L_LOAD(albedo + first));
+    c = lv3_sel(hit, c, zero);
+    exposure = 1.0f;
+#endif
+    if (!display)
+        c = lv3_scale(c, (lf)exposure);
+#if VIT_FORMAT != 2
+    if (!display)
+        c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));
+#endif
+#if VIT_EFFECT_DOTS
+    int px[VIT_LANES], py[VIT_LANES], in[VIT_LANES];
+    float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
+    L_STORE(x, px);
+    L_STORE(y, py);
+    L_STORE(inside, in);
+    L_STORE(c.x, r);
+    L_STORE(c.y, g);
+    L_STORE(c.z, b);
+    for (int i = 0; i < VIT_LANES; i++) {
+        uint dot = in[i] ? dots[(size_t)py[i] * scene->width + (size_t)px[i]] : 0;
+        if (dot > 0) {
+            global const vit_photon *p = photons + dot - 1;
+            float top = vit_max(vit_max(p->power[0], p->power[1]), vit_max(p->power[2], 1e-30f));
+            r[i] = p->power[0] / top;
+            g[i] = p->power[1] / top;
+            b[i] = p->power[2] / top;
+        }
+    }
+    c = lv3_set(L_LOAD(r), L_LOAD(g), L_LOAD(b));
+#endif
+    write_pixels(scene, x, y, inside, c, framebuffer);
+}
+
+#if VIT_EFFECT_DOTS
+kernel void dots_clear(global const vit_scene *scene, global uint *dots)
+{
+    uint i = (uint)get_global_id(0);
+    if (i < scene->width * scene->height)
+        dots[i] = 0;
+}
+
+/* The view `photons`: each visible photon as 2 x 2 pixels; where several fall on one, the greatest index shows. */
+kernel void photon_dots(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const vit_photon *photons,
+                        global const float *hit_distance, volatile global uint *dots)
+{
+    uint i = (uint)get_global_id(0);
+    if (i >= scene->photons || !(photons[i].radius2 > 0))
+        return;
+    global const vit_camera *c = cameras + frame;
+    float q[3], z = 0, a = 0, b = 0, right2 = 0, down2 = 0, d2 = 0;
+    for (int k = 0; k < 3; k++) {
+        q[k] = photons[i].position[k] - c->eye[k];
+        z = fma(q[k], c->forward[k], z);
+        a = fma(q[k], c->right[k], a);
+        b = fma(q[k], c->down[k], b);
+        right2 = fma(c->right[k], c->right[k], right2);
+        down2 = fma(c->down[k], c->down[k], down2);
+        d2 = fma(q[k], q[k], d2);
+    }
+    if (!(z > 0))
+        return;
+    float px = a / (right2 * z) + 0.5f * (float)scene->width, py = b / (down2 * z) + 0.5f * (float)scene->height;
+    if (!(px >= 0) || !(py >= 0) || !(px < (float)scene->width - 1) || !(py < (float)scene->height - 1))
+        return;
+    uint x = (uint)px, y = (uint)py, t = scene->tile, tile = y / t * scene->tiles_x + x / t, ix = x % t, iy = y % t;
+    uint sample = tile * t * t + (iy / 4 * (t / 4) + ix / 4) * 16 + iy % 4 * 4 + ix % 4;
+    if (sqrt(d2) > hit_distance[sample] * 1.01f)
+        return;
+    for (uint k = 0; k < 4; k++)
+        atomic_max(dots + (size_t)(y + k / 2) * scene->width + x + k % 2, i + 1);
+}
+#endif
+
+/* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest). */
+kernel void account(global uint *counters)
+{
+    for (uint i = (uint)get_local_id(0); i < VIT_COUNTER_COUNT; i += (uint)get_local_size(0)) {
+        uint total = counters[VIT_COUNTER_COUNT + i];
+        counters[VIT_COUNTER_COUNT + i] =
+            i == VIT_COUNTER_dropped_samples || i == VIT_COUNTER_dropped_entries ? add_sat(total, counters[i]) : max(total, counters[i]);
+    }
+}

@@ -1,0 +1,31 @@
+/* Pass 2: view samples, what each pixel's ray found. */
+kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
+                    global const float *hit_distance, global float *position, global uint *normal, global uint *albedo, global float *direct)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    global const vit_camera *camera = cameras + frame;
+    li x, y;
+    l_pixel(scene, first, &x, &y);
+    li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
+    li hit = L_NE(triangle, (li)(int)VIT_NONE);
+    lv3 light = lv3_load(scene->background);
+    if (l_any(hit)) {
+        lv3 eye = lv3_load(camera->eye), d = l_camera_ray(camera, x, y);
+        lf t = l_sel(hit, L_LOAD(hit_distance + first), (lf)1);
+        float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
+        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, (lf)sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
+        lv3_store_planes(s.position, position, n, first);
+        L_STORE(l_encode_normal(s.normal), normal + first);
+        L_STORE(l_encode_albedo(s.albedo) | l_sel_u(s.dark, (lu)VIT_SAMPLE_DARK, (lu)0), albedo + first);
+        light = lv3_sel(hit, s.emission, light);
+    } else {
+        lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);
+        lv3_store_planes(zero, position, n, first);
+        L_STORE((lu)0, normal + first);
+        L_STORE((lu)0, albedo + first);
+    }
+    /* Radiance that needs no light source: emission and background. Direct light is added to it. */
+    lv3_store_planes(light, direct, n, first);
+}

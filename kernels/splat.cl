@@ -1,0 +1,231 @@
+/* Pass 7: which photons reach which clusters. METHODS.md P, step 8, turned round: a work-group owns a node and sorts its photons
+ * into its children, level by level from the root, which holds all. Lists are in the photons' order by construction, so no
+ * atomics, and sums over them are the same on every device. Tests of a batch of photons against a child run in lanes. */
+#if VIT_EFFECT_PHOTONS
+
+#define SPLAT_BATCH 256
+
+/* A batch of the owner's photons, as planes. */
+typedef struct splat_batch {
+    float x[SPLAT_BATCH], y[SPLAT_BATCH], z[SPLAT_BATCH], radius2[SPLAT_BATCH];
+    float dx[SPLAT_BATCH], dy[SPLAT_BATCH], dz[SPLAT_BATCH];
+    uint id[SPLAT_BATCH];
+} splat_batch;
+
+/* Fills the batch with photons begin .. begin + SPLAT_BATCH - 1 of a list; what is beyond `count` is empty. */
+static inline void splat_load(local splat_batch *b, global const vit_photon *photons, global const uint *list, int all, uint begin, uint count)
+{
+    for (uint i = (uint)get_local_id(0); i < SPLAT_BATCH; i += (uint)get_local_size(0)) {
+        int used = begin + i < count;
+        uint id = used ? (all ? begin + i : list[begin + i]) : 0;
+        global const vit_photon *p = photons + id;
+        b->x[i] = p->position[0];
+        b->y[i] = p->position[1];
+        b->z[i] = p->position[2];
+        b->radius2[i] = used ? p->radius2 : -1.0f;
+        b->dx[i] = p->direction[0];
+        b->dy[i] = p->direction[1];
+        b->dz[i] = p->direction[2];
+        b->id[i] = id;
+    }
+}
+
+typedef struct splat_box {
+    float lo[3], hi[3], nlo[3], nhi[3];
+} splat_box;
+
+static inline splat_box splat_node(global const int *bounds, uint max_nodes, uint node)
+{
+    splat_box r;
+    for (int k = 0; k < 3; k++) {
+        r.lo[k] = vit_from_ordered(VIT_PLANE(bounds, k, max_nodes)[node]);
+        r.hi[k] = vit_from_ordered(VIT_PLANE(bounds, 3 + k, max_nodes)[node]);
+        r.nlo[k] = vit_from_ordered(VIT_PLANE(bounds, 6 + k, max_nodes)[node]);
+        r.nhi[k] = vit_from_ordered(VIT_PLANE(bounds, 9 + k, max_nodes)[node]);
+    }
+    return r;
+}
+
+#define SPLAT_LOAD(p) L_LOAD((local const float *)(p))
+
+/* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box (METHODS.md P (3.8)) and which do not come from
+ * behind for every normal in it. */
+static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
+{
+    lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
+    lf ox = x - l_max((lf)box->lo[0], l_min(x, (lf)box->hi[0])), oy = y - l_max((lf)box->lo[1], l_min(y, (lf)box->hi[1])),
+       oz = z - l_max((lf)box->lo[2], l_min(z, (lf)box->hi[2]));
+    li near = L_LT(fma(oz, oz, fma(oy, oy, ox * ox)), SPLAT_LOAD(b->radius2 + i));
+    lf dx = SPLAT_LOAD(b->dx + i), dy = SPLAT_LOAD(b->dy + i), dz = SPLAT_LOAD(b->dz + i);
+    lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) + l_min(dz * box->nlo[2], dz * box->nhi[2]);
+    return near & L_LT(least, (lf)0);
+}
+
+/* A level's work: group g owns slice g % split of the children of the level's (g / split)-th node. What stands between
+ * SPLAT_BEGIN and SPLAT_END runs for every batch of the node's photons and every child of the work-item, with batch, used (photons
+ * in it), begin (of the batch in the list), child and box in scope. */
+#define SPLAT_BEGIN                                                                                                              \
+    local splat_batch batch;                                                                                                     \
+    uint group_index = (uint)get_group_id(0), slice = group_index % split;                                                       \
+    uint node = level_begin(scene, prefix, level) + group_index / split;                                                         \
+    int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                               \
+    uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                  \
+    uint list_begin = exists && level > 0 ? list_first[node] : 0;                                                                \
+    uint list_size = !exists || slice >= children ? 0 : level > 0 ? list_count[node] : scene->photons;                           \
+    for (uint begin = 0; begin < list_size; begin += SPLAT_BATCH) {                                                              \
+        barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
+        splat_load(&batch, photons, list + list_begin, level == 0, begin, list_size);                                            \
+        barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
+        uint used = min(list_size - begin, (uint)SPLAT_BATCH);                                                                   \
+        for (uint c = slice + (uint)get_local_id(0) * split; c < children; c += (uint)get_local_size(0) * split) {               \
+            uint child = child_first + c;                                                                                        \
+            splat_box box = splat_node(bounds, max_nodes, child);
+
+#define SPLAT_END                                                                                                                \
+        }                                                                                                                        \
+    }
+
+/* Sets the children's list_count to 0; run before splat_count. One work-item a node. */
+kernel void splat_clear(global const vit_scene *scene, uint max_nodes, global uint *list_count)
+{
+    uint i = (uint)get_global_id(0);
+    if (i < max_nodes)
+        list_count[i] = 0;
+}
+
+kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
+                        global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
+                        global uint *list_count, global const uint *list, global const uint *counters)
+{
+    SPLAT_BEGIN
+        uint sum = 0;
+        for (uint i = 0; i < used; i += VIT_LANES)
+            sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
+        list_count[child] += sum;
+    SPLAT_END
+}
+
+/* Places the lists of the level's children one after another; what lies beyond max_list is dropped, the last entries first. One
+ * work-group. Sums saturate: saturating addition is associative, so the stretches of the scan do not show. */
+kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_list, uint level, global const uint *prefix, global uint *list_first,
+                        global uint *list_count, volatile global uint *counters)
+{
+    local uint partial[256];
+    uint begin = level_begin(scene, prefix, level + 1), end = level_end(scene, prefix, (global const uint *)counters, level + 1, max_nodes);
+    begin = min(begin, end);
+    uint id = (uint)get_local_id(0), size = (uint)get_local_size(0), length = (end - begin + size - 1) / size;
+    uint a = min(begin + id * length, end), b = min(a + length, end), sum = 0, start = counters[VIT_COUNTER_list], largest = 0;
+    for (uint i = a; i < b; i++) {
+        sum = add_sat(sum, list_count[i]);
+        largest = max(largest, list_count[i]);
+    }
+    partial[id] = sum;
+    barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+    uint at = start, total = start, dropped = 0;
+    for (uint i = 0; i < size; i++) {
+        at = add_sat(at, i < id ? partial[i] : 0u);
+        total = add_sat(total, partial[i]);
+    }
+    for (uint i = a; i < b; i++) {
+        uint count = list_count[i], kept = at < max_list ? min(count, max_list - at) : 0;
+        list_first[i] = min(at, max_list);
+        list_count[i] = kept;
+        at = add_sat(at, count);
+        dropped = add_sat(dropped, count - kept);
+    }
+    if (dropped > 0)
+        atomic_add(counters + VIT_COUNTER_dropped_entries, dropped);
+    if (level + 1 == scene->levels)
+        atomic_max(counters + VIT_COUNTER_largest, largest);
+    if (id == 0) {
+        counters[VIT_COUNTER_list] = total;
+        if (level + 1 == scene->levels)
+            counters[VIT_COUNTER_pairs] = total - start;
+    }
+}
+
+kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
+                        global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
+                        global const uint *list_count, global uint *list, global uint *cursor, global const uint *counters)
+{
+    SPLAT_BEGIN
+        uint at = begin == 0 ? list_first[child] : cursor[child], end = list_first[child] + list_count[child];
+        for (uint i = 0; i < used; i += VIT_LANES) {
+            for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1) {
+                if (at < end)
+                    list[at] = batch.id[i + 31u - (uint)clz(hits & (~hits + 1u))];
+                at++;
+            }
+        }
+        cursor[child] = at;
+    SPLAT_END
+}
+
+#if VIT_EFFECT_BUCKETS
+
+#if VIT_EFFECT_RAW_BUCKETS
+#define BUCKETS 54 /* directions on a cube, 6 faces x 3 x 3: METHODS.md P, step 8 */
+static inline uint bucket_of(float x, float y, float z)
+{
+    float ax = fabs(x), ay = fabs(y), az = fabs(z);
+    int on_x = ax >= ay && ax >= az, on_y = !on_x && ay >= az;
+    float major = on_x ? x : on_y ? y : z, u = on_x ? y : x, v = on_x || on_y ? z : y, scale = 1.5f / vit_max(fabs(major), 1e-9f);
+    int iu = min((int)fma(u, scale, 1.5f), 2), iv = min((int)fma(v, scale, 1.5f), 2);
+    return (uint)((on_x ? 0 : on_y ? 2 : 4) + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
+}
+#else
+#define BUCKETS 8 /* octants: whether a photon comes from the front of an axis-parallel surface is exact */
+static inline uint bucket_of(float x, float y, float z)
+{
+    return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
+}
+#endif
+
+/* Directions are those that light comes from. Clears the clusters' buckets. One work-item a float4. */
+kernel void bucket_clear(global const vit_scene *scene, uint max_nodes, global float *buckets)
+{
+    uint i = (uint)get_global_id(0);
+    if (i < max_nodes * BUCKETS)
+        vstore4((float4)(0), i, buckets);
+}
+
+/* The clusters' level: each photon's power goes, weighted by the kernel at the box's centre, into the bucket it comes from. */
+kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
+                          global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
+                          global uint *list_count, global const uint *list, volatile global uint *counters, global float *buckets)
+{
+    uint pairs = 0;
+    SPLAT_BEGIN
+        float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
+        uint sum = 0;
+        for (uint i = 0; i < used; i += VIT_LANES) {
+            uint hits = l_bits(splat_touch(&batch, i, &box));
+            if (hits == 0)
+                continue;
+            sum += (uint)popcount(hits);
+            lf ox = SPLAT_LOAD(batch.x + i) - cx, oy = SPLAT_LOAD(batch.y + i) - cy, oz = SPLAT_LOAD(batch.z + i) - cz;
+            lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
+#if VIT_EFFECT_FLATTENED
+            float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
+            float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? 1.0f / sqrt(m2) : 0;
+            lf off = fma(oz, (lf)(mz * unit), fma(oy, (lf)(my * unit), ox * (mx * unit)));
+            d2 = fma(off * off, (lf)scene->flatten, d2);
+#endif
+            hits &= l_bits(L_LT(d2, r2));
+            float weight[VIT_LANES];
+            L_STORE(1.0f - d2 / r2, weight);
+            for (; hits != 0; hits &= hits - 1) {
+                uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
+                global const vit_photon *p = photons + batch.id[k];
+                uint at = child * BUCKETS + bucket_of(-batch.dx[k], -batch.dy[k], -batch.dz[k]);
+                vstore4(vload4(at, buckets) + (float4)(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
+            }
+        }
+        list_count[child] += sum;
+        pairs += sum;
+    SPLAT_END
+    if (pairs > 0)
+        atomic_add(counters + VIT_COUNTER_pairs, pairs);
+}
+#endif
+#endif

@@ -1,0 +1,121 @@
+/* vit_require, vit_open, vit_close: from a pack to everything that its frames need. */
+#include "vit.h"
+#include <stdio.h>
+#include <string.h>
+
+static vit_status check_options(const vit_open_info *info, vit_text *why) {
+    const char *bad = NULL;
+    if (info->lanes != 0 && info->lanes != 1 && info->lanes != 8 && info->lanes != 16)
+        bad = "lanes must be 0, 1, 8 or 16";
+    else if (info->group > 256 || (info->group & (info->group - 1)) != 0)
+        bad = "group must be 0 or a power of two up to 256";
+    else if ((unsigned)info->format > VIT_FORMAT_RGBA32F)
+        bad = "no such format";
+    else if ((unsigned)info->view > VIT_VIEW_albedo)
+        bad = "no such view";
+    else if (info->max_nodes > 1u << 26 || info->max_list > 1u << 28)
+        bad = "max_nodes is at most 2^26, max_list 2^28";
+    if (!bad)
+        return VIT_OK;
+    snprintf(why->text, sizeof why->text, "%s", bad);
+    return VIT_USAGE;
+}
+
+static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
+    vit_limits l = {.effects = s->effects, .max_nodes = s->max_nodes, .max_list = s->max_list, .format = info->format, .view = info->view};
+    l.lanes = info->lanes;
+    l.group = info->group;
+    if (info->max_nodes)
+        l.max_nodes = info->max_nodes;
+    if (info->max_list)
+        l.max_list = info->max_list;
+    if (info->view == VIT_VIEW_photons && (s->effects & ON(PHOTONS)))
+        l.effects |= ON_DOTS;
+    return l;
+}
+
+static size_t host_bytes(void) {
+    return (sizeof(vit) + 63) / 64 * 64;
+}
+
+static void describe(const vit_scene *s, const vit_limits *l, vit_requirements *need) {
+    memset(need, 0, sizeof *need);
+    need->width = s->width;
+    need->height = s->height;
+    need->frames = s->frames;
+    need->fps = s->fps;
+    need->effects = s->effects;
+    need->host_bytes = host_bytes();
+    need->frame_bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, l);
+    for (uint32_t b = 0; b < B_COUNT; b++) {
+        uint64_t bytes = vit_buffer_bytes(b, s, l);
+        if (bytes == 0)
+            continue;
+        need->buffers[need->buffer_count++] = (vit_buffer_info){vit_buffer_names[b], vit_buffer_effect(b, l), bytes};
+        need->device_bytes += bytes;
+    }
+    for (uint32_t p = 0; p < vit_pass_count; p++)
+        if (vit_pass_called(p, l))
+            need->passes[need->pass_count++] = vit_passes[p].name;
+}
+
+vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why) {
+    vit_pack pack;
+    vit_status status = check_options(info, why);
+    if (status == VIT_OK)
+        status = vit_pack_read(info->pack, info->pack_size, &pack, why);
+    if (status != VIT_OK)
+        return status;
+    vit_limits l = limits_of(info, pack.scene);
+    describe(pack.scene, &l, need);
+    return VIT_OK;
+}
+
+vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
+    vit_pack pack;
+    *out = NULL;
+    vit_status status = check_options(info, why);
+    if (status == VIT_OK)
+        status = vit_pack_read(info->pack, info->pack_size, &pack, why);
+    if (status != VIT_OK)
+        return status;
+    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < host_bytes()) {
+        snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", host_bytes());
+        return VIT_USAGE;
+    }
+    vit *v = info->arena;
+    memset(v, 0, sizeof *v);
+    v->pack = pack;
+    v->profile = info->profile != 0;
+    v->limits = limits_of(info, pack.scene);
+    status = vit_device_find(info->device, &v->device.id, why);
+    if (status == VIT_OK) {
+        vit_device_suit(v->device.id, pack.scene, &v->limits);
+        status = vit_device_open(&v->device, &v->pack, &v->limits, v->profile, why);
+    }
+    if (status != VIT_OK) {
+        vit_device_close(&v->device);
+        return status;
+    }
+    *out = v;
+    return VIT_OK;
+}
+
+void vit_close(vit *v) {
+    if (!v)
+        return;
+    for (uint32_t i = 0; i < v->enqueued && v->profile; i++)
+        clReleaseEvent(v->events[i]);
+    v->enqueued = 0;
+    vit_device_close(&v->device);
+}
+
+uint64_t vit_golden(const vit *v, uint32_t index) {
+    const vit_gold *gold = v->pack.section[VIT_SECTION_GOLD];
+    if (!gold || index >= v->pack.scene->frames || v->limits.view != VIT_VIEW_final)
+        return 0;
+    const uint32_t *h = v->limits.format == VIT_FORMAT_XRGB8888 ? gold[index].xrgb8888
+                        : v->limits.format == VIT_FORMAT_RGB565 ? gold[index].rgb565
+                                                                : gold[index].rgba32f;
+    return (uint64_t)h[1] << 32 | h[0];
+}

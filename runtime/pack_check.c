@@ -1,0 +1,169 @@
+/* pack_check.c: checks the sections of plain records: every index and every float that a kernel will use. */
+#include "pack_check.h"
+
+vit_status pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why) {
+    for (vit_u32 i = 0; i < s->frames; i++) {
+        const vit_camera *c = &cameras[i];
+        if (!all_finite(c->eye, 3) || !all_finite(c->corner, 3) || !all_finite(c->right, 3) || !all_finite(c->down, 3))
+            return pack_refuse(why, "section CAMS: camera %u: a vector is not finite", i);
+        if (!is_unit(c->forward))
+            return pack_refuse(why, "section CAMS: camera %u: forward is not a unit vector", i);
+        if (!in_range(c->exposure, 0.0f, FLT_MAX))
+            return pack_refuse(why, "section CAMS: camera %u: exposure must be finite and >= 0", i);
+        if (!(c->pad0 == 0.0f && c->pad1 == 0.0f && c->pad2 == 0.0f && c->pad3 == 0.0f))
+            return pack_refuse(why, "section CAMS: camera %u: padding is not 0", i);
+    }
+    return VIT_OK;
+}
+
+static const char *light_fault(const vit_scene *s, const vit_light *l) {
+    const bool spot = l->kind == VIT_LIGHT_SPOT;
+    if (!spot && l->kind != VIT_LIGHT_POINT)
+        return "unknown kind";
+    if (l->falloff != VIT_FALLOFF_INVERSE_SQUARE && l->falloff != VIT_FALLOFF_WINDOW)
+        return "unknown falloff";
+    if (!all_finite(l->position, 3) || !all_finite(l->direction, 3))
+        return "position or direction is not finite";
+    if (spot && !is_unit(l->direction))
+        return "direction is not a unit vector";
+    if (!in_range(l->cos_outer, -1.0f, 1.0f))
+        return "cos_outer must be in -1..1";
+    if (!all_finite(&l->spot_scale, 1) || !all_finite(&l->spot_offset, 1))
+        return "spot_scale or spot_offset is not finite";
+    if (!all_in_range(l->intensity, 3, 0.0f, FLT_MAX))
+        return "intensity must be finite and >= 0";
+    if (!in_range(l->inv_range2, 0.0f, FLT_MAX))
+        return "inv_range2 must be finite and >= 0";
+    if (spot && !(s->effects & VIT_EFFECT_BIT_SPOT))
+        return "a spot light without the effect SPOT";
+    if (l->inv_range2 > 0.0f && !(s->effects & VIT_EFFECT_BIT_RANGE))
+        return "a range without the effect RANGE";
+    if ((uint64_t)l->path_first + l->path_count > s->paths)
+        return "paths run beyond the scene's";
+    return all_zero(l->pad, 3) ? 0 : "padding is not 0";
+}
+
+/* Photon path p of a frame belongs to exactly one light: ranges that neither overlap nor leave a path out. */
+static vit_status check_path_ranges(const vit_scene *s, const vit_light *lights, vit_text *why) {
+    uint64_t sum = 0;
+    for (vit_u32 i = 0; i < s->lights; i++) {
+        const vit_light *a = &lights[i];
+        sum += a->path_count;
+        for (vit_u32 j = 0; j < i; j++) {
+            const vit_light *b = &lights[j];
+            if (a->path_first < b->path_first + b->path_count && b->path_first < a->path_first + a->path_count &&
+                a->path_count != 0 && b->path_count != 0)
+                return pack_refuse(why, "section LITE: lights %u and %u share photon paths", j, i);
+        }
+    }
+    if (sum != s->paths)
+        return pack_refuse(why, "section LITE: the lights have %llu photon paths, META says %u", (unsigned long long)sum,
+                           s->paths);
+    return VIT_OK;
+}
+
+vit_status pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why) {
+    for (vit_u32 frame = 0; frame < s->frames; frame++)
+        for (vit_u32 i = 0; i < s->lights; i++) {
+            const vit_light *l = &lights[(size_t)frame * s->lights + i];
+            const char *fault = light_fault(s, l);
+            if (fault)
+                return pack_refuse(why, "section LITE: frame %u, light %u: %s", frame, i, fault);
+            if (l->path_first != lights[i].path_first || l->path_count != lights[i].path_count)
+                return pack_refuse(why, "section LITE: frame %u, light %u: paths differ from frame 0", frame, i);
+        }
+    return check_path_ranges(s, lights, why);
+}
+
+vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why) {
+    for (vit_u32 i = 0; i < s->triangles; i++) {
+        const vit_attributes *a = &attributes[i];
+        const vit_u32 material = a->material & VIT_MATERIAL_INDEX;
+        if (material >= s->materials)
+            return pack_refuse(why, "section ATTR: triangle %u: material %u of %u", i, material, s->materials);
+        if (a->material & ~(VIT_MATERIAL_INDEX | VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK))
+            return pack_refuse(why, "section ATTR: triangle %u: unknown flags 0x%x", i, a->material);
+        if (!all_finite(a->uv[0], 2) || !all_finite(a->uv[1], 2) || !all_finite(a->uv[2], 2))
+            return pack_refuse(why, "section ATTR: triangle %u: a texture coordinate is not finite", i);
+        if (!all_zero(a->pad, 2))
+            return pack_refuse(why, "section ATTR: triangle %u: padding is not 0", i);
+    }
+    return VIT_OK;
+}
+
+vit_status pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
+    for (vit_u32 i = 0; i < s->materials; i++) {
+        const vit_material *m = &materials[i];
+        if (!all_in_range(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO))
+            return pack_refuse(why, "section MATL: material %u: albedo must be in 0..%g", i, (double)VIT_MAX_ALBEDO);
+        if (!all_in_range(m->emission, 3, 0.0f, FLT_MAX))
+            return pack_refuse(why, "section MATL: material %u: emission must be finite and >= 0", i);
+        if (m->texture != VIT_NONE && m->texture >= s->textures)
+            return pack_refuse(why, "section MATL: material %u: texture %u of %u", i, m->texture, s->textures);
+        if (m->cutout > 1)
+            return pack_refuse(why, "section MATL: material %u: cutout must be 0 or 1, got %u", i, m->cutout);
+        if (m->cutout && m->texture == VIT_NONE)
+            return pack_refuse(why, "section MATL: material %u: cut out by no texture", i);
+    }
+    return VIT_OK;
+}
+
+vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why) {
+    for (vit_u32 i = 0; i < s->textures; i++) {
+        const vit_texture *t = &textures[i];
+        if (t->mip_count == 0)
+            return pack_refuse(why, "section TEXR: texture %u: no mip level", i);
+        if ((uint64_t)t->first_mip + t->mip_count > s->mips)
+            return pack_refuse(why, "section TEXR: texture %u: mip levels run beyond the %u of META", i, s->mips);
+        if (t->wrap_u > VIT_WRAP_MIRROR || t->wrap_v > VIT_WRAP_MIRROR)
+            return pack_refuse(why, "section TEXR: texture %u: unknown wrap mode", i);
+    }
+    return VIT_OK;
+}
+
+vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why) {
+    for (vit_u32 i = 0; i < s->mips; i++) {
+        const vit_mip *m = &mips[i];
+        if (m->width < 1 || m->width > 16384 || m->height < 1 || m->height > 16384)
+            return pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width, m->height);
+        if (m->pitch < m->width + 2)
+            return pack_refuse(why, "section MIPS: mip %u: pitch %u leaves no gutter beside %u texels", i, m->pitch, m->width);
+        /* The gutter's corners are texels (-1, -1) and (width, height). Products of 32-bit numbers fit 64 bits. */
+        const uint64_t before = (uint64_t)m->pitch + 1, last = m->offset + (uint64_t)m->height * m->pitch + m->width;
+        if (m->offset < before || last >= s->texels)
+            return pack_refuse(why, "section MIPS: mip %u: runs beyond the atlas of %u texels", i, s->texels);
+    }
+    return VIT_OK;
+}
+
+static const char *photon_fault(const vit_photon *p) {
+    if (!all_finite(p->position, 3) || !all_finite(p->direction, 3) || !all_finite(&p->radius2, 1) ||
+        !all_finite(&p->inv_radius2, 1))
+        return "position, direction or radius is not finite";
+    if (!all_in_range(p->power, 3, 0.0f, FLT_MAX))
+        return "power must be finite and >= 0";
+    if (p->zone != 0)
+        return "zone is not 0";
+    if (p->radius2 < 0.0f)
+        return all_in_range(p->power, 3, 0.0f, 0.0f) ? 0 : "an empty slot has power";
+    if (!is_unit(p->direction))
+        return "direction is not a unit vector";
+    const double product = (double)p->radius2 * p->inv_radius2;
+    return product >= 1 - 1e-4 && product <= 1 + 1e-4 ? 0 : "inv_radius2 is not 1 / radius2";
+}
+
+vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
+    for (vit_u32 i = 0; i < s->baked; i++) {
+        const char *fault = photon_fault(&photons[i]);
+        if (fault)
+            return pack_refuse(why, "section PHOT: photon %u: %s", i, fault);
+    }
+    return VIT_OK;
+}
+
+vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why) {
+    for (vit_u32 i = 0; i < s->frames; i++)
+        if (!all_zero(golds[i].pad, 4))
+            return pack_refuse(why, "section GOLD: frame %u: padding is not 0", i);
+    return VIT_OK;
+}

@@ -1,0 +1,122 @@
+/* pack_meta.c: checks META, on which all other checks stand: counts, derived fields, floats, effects. */
+#include "pack_check.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define MAX_NODES (1u << 26)
+#define MAX_LIST (1u << 28)
+#define MAX_SLICE (1u << 24) /* slice numbers pass through floats, exact up to here */
+
+static vit_status check_derived(const vit_scene *s, vit_text *why) {
+    vit_scene derived = *s;
+    vit_text cause = {""};
+    if (vit_pack_derive(&derived, &cause) != VIT_OK)
+        return pack_refuse(why, "section META: %s", cause.text);
+#define FIELD(name)                                                                                                            \
+    { #name, offsetof(vit_scene, name), sizeof s->name }
+    static const struct {
+        const char *name;
+        size_t offset, size;
+    } fields[] = {FIELD(tiles_x),    FIELD(tiles_y),    FIELD(samples),    FIELD(photons),
+                  FIELD(key_bits),   FIELD(key_bits_x), FIELD(key_bits_y), FIELD(key_bits_z),
+                  FIELD(key_bits_n), FIELD(levels),     FIELD(mask_words), FIELD(level_first)};
+#undef FIELD
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
+        if (memcmp((const char *)s + fields[i].offset, (const char *)&derived + fields[i].offset, fields[i].size) != 0)
+            return pack_refuse(why, "section META: %s does not follow from the counts", fields[i].name);
+    return VIT_OK;
+}
+
+static vit_status check_floats(const vit_scene *s, vit_text *why) {
+    const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
+    const struct {
+        const char *name;
+        float value, least, most;
+    } floats[] = {
+        {"fps", s->fps, least, 1000.0f},
+        {"radius", s->radius, s->effects & VIT_EFFECT_BIT_PHOTONS ? least : 0.0f, FLT_MAX},
+        {"flatten", s->flatten, 0.0f, FLT_MAX},
+        {"ray_offset", s->ray_offset, 0.0f, FLT_MAX},
+        {"box_pad", s->box_pad, 0.0f, FLT_MAX},
+        {"slice_near", s->slice_near, least, FLT_MAX},
+        {"slice_scale", s->slice_scale, least, FLT_MAX},
+        {"background red", s->background[0], 0.0f, FLT_MAX},
+        {"background green", s->background[1], 0.0f, FLT_MAX},
+        {"background blue", s->background[2], 0.0f, FLT_MAX},
+    };
+    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
+        if (!in_range(floats[i].value, floats[i].least, floats[i].most))
+            return pack_refuse(why, "section META: %s must be in %g..%g, got %g", floats[i].name, (double)floats[i].least,
+                               (double)floats[i].most, (double)floats[i].value);
+    return VIT_OK;
+}
+
+/* An effect makes no sense without the one that it refines. */
+static vit_status check_needs(const vit_scene *s, vit_text *why) {
+#define NEEDS(effect, needed)                                                                                                  \
+    { #effect, VIT_EFFECT_BIT_##effect, #needed, VIT_EFFECT_BIT_##needed }
+    static const struct {
+        const char *name;
+        vit_u32 bit;
+        const char *needed_name;
+        vit_u32 needed;
+    } needs[] = {NEEDS(SPOT, LIGHTS),         NEEDS(RANGE, LIGHTS),      NEEDS(PHOTONS, LIGHTS),
+                 NEEDS(TRACED, PHOTONS),      NEEDS(LIST, PHOTONS),      NEEDS(BUCKETS, PHOTONS),
+                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS)};
+#undef NEEDS
+    for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
+        if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
+            return pack_refuse(why, "section META: effect %s without %s", needs[i].name, needs[i].needed_name);
+    return VIT_OK;
+}
+
+static vit_status check_effects(const vit_scene *s, vit_text *why) {
+#define X(bit, name, macro, reason) | VIT_EFFECT_BIT_##macro
+    const vit_u32 known = 0u VIT_EFFECTS(X);
+#undef X
+    const vit_u32 e = s->effects, textured = VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT;
+    if (e & ~known)
+        return pack_refuse(why, "section META: unknown effects 0x%x", e & ~known);
+    vit_status status = check_needs(s, why);
+    if (status != VIT_OK)
+        return status;
+    const bool photons = e & VIT_EFFECT_BIT_PHOTONS, list = e & VIT_EFFECT_BIT_LIST, buckets = e & VIT_EFFECT_BIT_BUCKETS;
+    if (list && buckets)
+        return pack_refuse(why, "section META: effects LIST and BUCKETS exclude each other");
+    if (photons && !list && !buckets)
+        return pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
+    if ((s->lights > 0) != ((e & VIT_EFFECT_BIT_LIGHTS) != 0))
+        return pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
+    if ((s->paths > 0) != ((e & VIT_EFFECT_BIT_TRACED) != 0))
+        return pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
+    if (s->baked > 0 && !photons)
+        return pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
+    if ((e & textured) && s->textures == 0)
+        return pack_refuse(why, "section META: effects TEXTURES or CUTOUT without a texture");
+    return VIT_OK;
+}
+
+static vit_status check_bounds(const vit_scene *s, vit_text *why) {
+    const vit_u32 root = s->effects & VIT_EFFECT_BIT_PHOTONS ? 1 : 0; /* the hierarchy always has one */
+    if (s->max_nodes < root || s->max_nodes > MAX_NODES)
+        return pack_refuse(why, "section META: max_nodes must be in %u..%u, got %u", root, MAX_NODES, s->max_nodes);
+    if (s->max_list > MAX_LIST)
+        return pack_refuse(why, "section META: max_list must be in 0..%u, got %u", MAX_LIST, s->max_list);
+    if (s->slice_first > MAX_SLICE)
+        return pack_refuse(why, "section META: slice_first must be in 0..%u, got %u", MAX_SLICE, s->slice_first);
+    if (s->leaf_words != 0 || !all_zero(s->reserved, sizeof s->reserved / sizeof s->reserved[0]))
+        return pack_refuse(why, "section META: a reserved field is not 0");
+    return VIT_OK;
+}
+
+vit_status pack_check_meta(const vit_scene *s, vit_text *why) {
+    vit_status status = check_derived(s, why);
+    if (status == VIT_OK)
+        status = check_floats(s, why);
+    if (status == VIT_OK)
+        status = check_effects(s, why);
+    if (status == VIT_OK)
+        status = check_bounds(s, why);
+    return status;
+}

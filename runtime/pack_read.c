@@ -1,0 +1,180 @@
+/* pack_read.c: checks the container of a pack (header, table, places, hashes), then has each section's contents checked.
+ * Nothing is used before it is checked; no arithmetic on numbers of the file can wrap. */
+#include "pack_read.h"
+#include "pack_check.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Layouts are the same for every compiler only as long as this holds; ATLS is a plain array of words. */
+#define X(code, type, records)                                                                                                 \
+    _Static_assert(VIT_SECTION_##code == VIT_SECTION_ATLS || sizeof(type) % 16 == 0, #type " must be a multiple of 16 bytes");
+VIT_SECTIONS(X)
+#undef X
+_Static_assert(sizeof(vit_pack_header) == 64 && sizeof(vit_pack_entry) == 32, "as drawn in vitrine_pack.h");
+
+static const char codes[VIT_SECTION_COUNT][5] = {
+#define X(code, type, records) #code,
+    VIT_SECTIONS(X)
+#undef X
+};
+
+static const uint32_t record_bytes[VIT_SECTION_COUNT] = {
+#define X(code, type, records) sizeof(type),
+    VIT_SECTIONS(X)
+#undef X
+};
+
+#define TABLE_END (sizeof(vit_pack_header) + VIT_SECTION_COUNT * sizeof(vit_pack_entry))
+
+vit_status pack_refuse(vit_text *why, const char *format, ...) {
+    if (!why)
+        return VIT_BAD_INPUT;
+    int used = snprintf(why->text, sizeof why->text, "pack: ");
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(why->text + used, sizeof why->text - (size_t)used, format, arguments);
+    va_end(arguments);
+    return VIT_BAD_INPUT;
+}
+
+/* Sections are used in place, so the host must read numbers as the file has them. */
+static bool host_is_little_endian(void) {
+    const uint32_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 1;
+}
+
+/* Whole words by memcmp against a block of zeros: gaps may be large. */
+static bool bytes_are_zero(const unsigned char *bytes, size_t size) {
+    static const unsigned char zeros[256];
+    for (size_t done = 0; done < size;) {
+        size_t step = size - done < sizeof zeros ? size - done : sizeof zeros;
+        if (memcmp(bytes + done, zeros, step) != 0)
+            return false;
+        done += step;
+    }
+    return true;
+}
+
+static vit_status check_header(const vit_pack_header *h, size_t size, vit_text *why) {
+    if (size < sizeof *h)
+        return pack_refuse(why, "header: the file has %zu bytes, a header has %zu", size, sizeof *h);
+    if (memcmp(h->magic, VIT_PACK_MAGIC, sizeof h->magic) != 0)
+        return pack_refuse(why, "header: not a Vitrine pack");
+    if (!host_is_little_endian())
+        return pack_refuse(why, "header: packs are little-endian, this machine is big-endian");
+    if (h->version != VIT_PACK_VERSION)
+        return pack_refuse(why, "header: version %u, this program reads version %u", h->version, VIT_PACK_VERSION);
+    if (h->sections != VIT_SECTION_COUNT)
+        return pack_refuse(why, "header: %u sections, expected %d", h->sections, VIT_SECTION_COUNT);
+    if (h->size != size)
+        return pack_refuse(why, "header: the pack has %llu bytes, the file %zu", (unsigned long long)h->size, size);
+    if (!bytes_are_zero(h->zero, sizeof h->zero))
+        return pack_refuse(why, "header: reserved bytes are not 0");
+    if (size < TABLE_END)
+        return pack_refuse(why, "header: the file ends inside the section table");
+    if (vit_hash(h + 1, TABLE_END - sizeof *h) != h->table_hash)
+        return pack_refuse(why, "header: the hash of the section table does not match");
+    return VIT_OK;
+}
+
+/* Place of section `i`, which may begin no earlier than `end`, the end of what lies before it. */
+static vit_status check_place(const unsigned char *bytes, size_t size, const vit_pack_entry *e, int i, uint64_t end,
+                              vit_text *why) {
+    if (memcmp(e->code, codes[i], sizeof e->code) != 0)
+        return pack_refuse(why, "section %s: not at its place in the section table", codes[i]);
+    if (e->record != record_bytes[i])
+        return pack_refuse(why, "section %s: records of %u bytes, expected %u", codes[i], e->record, record_bytes[i]);
+    if (e->offset % VIT_PACK_ALIGN != 0)
+        return pack_refuse(why, "section %s: offset %llu is not a multiple of %u", codes[i], (unsigned long long)e->offset,
+                           VIT_PACK_ALIGN);
+    if (e->offset > size || e->size > size - e->offset)
+        return pack_refuse(why, "section %s: runs beyond the end of the file", codes[i]);
+    if (e->offset < end)
+        return pack_refuse(why, "section %s: overlaps what lies before it", codes[i]);
+    if (!bytes_are_zero(bytes + end, (size_t)(e->offset - end)))
+        return pack_refuse(why, "section %s: the gap before it is not 0", codes[i]);
+    if (vit_hash(bytes + e->offset, (size_t)e->size) != e->hash)
+        return pack_refuse(why, "section %s: the hash does not match", codes[i]);
+    return VIT_OK;
+}
+
+static vit_status check_places(const unsigned char *bytes, size_t size, vit_pack *out, vit_text *why) {
+    const vit_pack_entry *table = (const vit_pack_entry *)(const void *)(bytes + sizeof(vit_pack_header));
+    uint64_t end = TABLE_END;
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        vit_status status = check_place(bytes, size, &table[i], i, end, why);
+        if (status != VIT_OK)
+            return status;
+        end = table[i].offset + table[i].size;
+        out->bytes[i] = (size_t)table[i].size;
+        out->section[i] = table[i].size > 0 ? bytes + table[i].offset : 0;
+    }
+    if (end != size)
+        return pack_refuse(why, "header: %llu bytes follow the last section", (unsigned long long)(size - end));
+    return VIT_OK;
+}
+
+/* META has passed its check, so no count exceeds 2^32 and no product here wraps. */
+static vit_status check_sizes(const vit_scene *s, const vit_pack *p, vit_text *why) {
+    const uint64_t expected[VIT_SECTION_COUNT] = {
+#define X(code, type, records) records,
+        VIT_SECTIONS(X)
+#undef X
+    };
+    for (int i = 0; i < VIT_SECTION_COUNT; i++)
+        if (p->bytes[i] != expected[i] * record_bytes[i])
+            return pack_refuse(why, "section %s: %zu bytes, but META counts %llu records of %u", codes[i], p->bytes[i],
+                               (unsigned long long)expected[i], record_bytes[i]);
+    return VIT_OK;
+}
+
+static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text *why) {
+    const void *const *at = p->section;
+    vit_status status = pack_check_cameras(s, at[VIT_SECTION_CAMS], why);
+    if (status == VIT_OK)
+        status = pack_check_lights(s, at[VIT_SECTION_LITE], why);
+    if (status == VIT_OK)
+        status = pack_check_triangles(s, at[VIT_SECTION_GEOM], why);
+    if (status == VIT_OK)
+        status = pack_check_attributes(s, at[VIT_SECTION_ATTR], why);
+    if (status == VIT_OK)
+        status = pack_check_tree(s, at[VIT_SECTION_BVHN], at[VIT_SECTION_GEOM], why);
+    if (status == VIT_OK)
+        status = pack_check_materials(s, at[VIT_SECTION_MATL], why);
+    if (status == VIT_OK)
+        status = pack_check_textures(s, at[VIT_SECTION_TEXR], why);
+    if (status == VIT_OK)
+        status = pack_check_mips(s, at[VIT_SECTION_MIPS], why);
+    if (status == VIT_OK)
+        status = pack_check_photons(s, at[VIT_SECTION_PHOT], why);
+    if (status == VIT_OK)
+        status = pack_check_golds(s, at[VIT_SECTION_GOLD], why);
+    return status; /* every word of ATLS is a texel */
+}
+
+vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text *why) {
+    *out = (vit_pack){0};
+    if (!bytes || (uintptr_t)bytes % 8 != 0)
+        return pack_refuse(why, "header: the pack must be in memory, 8-byte aligned");
+    vit_pack found = {0};
+    vit_status status = check_header(bytes, size, why);
+    if (status == VIT_OK)
+        status = check_places(bytes, size, &found, why);
+    if (status != VIT_OK)
+        return status;
+    if (found.bytes[VIT_SECTION_META] != sizeof(vit_scene))
+        return pack_refuse(why, "section META: %zu bytes, expected %zu", found.bytes[VIT_SECTION_META], sizeof(vit_scene));
+    found.scene = found.section[VIT_SECTION_META];
+    status = pack_check_meta(found.scene, why);
+    if (status == VIT_OK)
+        status = check_sizes(found.scene, &found, why);
+    if (status == VIT_OK)
+        status = check_contents(found.scene, &found, why);
+    if (status == VIT_OK)
+        *out = found;
+    return status;
+}

@@ -1,0 +1,131 @@
+/* passes.c: the frame as a table, and the table of its buffers. Everything that needs a list of passes or buffers walks these:
+ * building kernels, allocating, enqueueing, timing, tracing, --explain. */
+#ifndef VIT_PASSES_H
+#define VIT_PASSES_H
+
+#include "vitrine.h"
+#include "vitrine_pack.h"
+
+#define ON(macro) ((uint32_t)VIT_EFFECT_BIT_##macro)
+#define ON_DOTS 0x80000000u /* not an effect of the pack: the view `photons` */
+#define ALWAYS 0u
+
+/* What the sizes of buffers and passes follow from, besides the scene. */
+typedef struct vit_limits {
+    uint32_t effects;          /* the pack's, and ON_DOTS */
+    uint32_t max_nodes, max_list;
+    vit_format format;
+    vit_view view;
+    uint32_t lanes, group;     /* samples a work-item, work-items a work-group of flat passes */
+    uint32_t scan_group;       /* work-items of single-group passes */
+    uint32_t splat_group;      /* work-items a node in splat passes */
+    uint32_t run;              /* samples in a row a work-item of cluster passes; a multiple of 16 */
+    uint32_t split;            /* work-groups a node at the hierarchy's upper levels */
+} vit_limits;
+
+#define VIT_BUCKETS_OF(l) ((l)->effects & ON(RAW_BUCKETS) ? 54u : 8u)
+
+/* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits l). */
+#define VIT_BUFFERS(X)                                                                                                           \
+    X(scene, ALWAYS, META, sizeof(vit_scene))                                                                                    \
+    X(cameras, ALWAYS, CAMS, s->frames * sizeof(vit_camera))                                                                     \
+    X(lights, ON(LIGHTS), LITE, (uint64_t)s->frames *s->lights * sizeof(vit_light))                                              \
+    X(triangles, ALWAYS, GEOM, s->triangles * sizeof(vit_triangle))                                                              \
+    X(attributes, ALWAYS, ATTR, s->triangles * sizeof(vit_attributes))                                                           \
+    X(bvh, ALWAYS, BVHN, s->nodes * sizeof(vit_bvh_node))                                                                        \
+    X(materials, ALWAYS, MATL, s->materials * sizeof(vit_material))                                                              \
+    X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                              \
+    X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                          \
+    X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                          \
+    X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
+    X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
+    X(position, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
+    X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
+    X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
+    X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \
+    X(photons, ON(PHOTONS), NONE, (uint64_t)s->photons * sizeof(vit_photon))                                                     \
+    X(masks, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                     \
+    X(prefix, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                    \
+    X(keys, ON(PHOTONS), NONE, (uint64_t)s->samples * 4)                                                                         \
+    X(node_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
+    X(node_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
+    X(bounds, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 48)                                                                    \
+    X(list_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
+    X(list_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
+    X(cursor, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                     \
+    X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                        \
+    X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                                \
+    X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
+    X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
+    X(counters, ALWAYS, NONE, 2 * VIT_COUNTER_COUNT * 4)                                                                         \
+    X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
+
+#define VIT_SECTION_NONE VIT_SECTION_COUNT
+
+typedef enum vit_buffer {
+#define X(name, when, section, bytes) B_##name,
+    VIT_BUFFERS(X)
+#undef X
+    B_COUNT,
+    /* Arguments by value, in the same list of a pass's arguments. */
+    V_frame = B_COUNT,
+    V_level,
+    V_run,
+    V_split,
+    V_max_nodes,
+    V_max_list,
+    V_END
+} vit_buffer;
+
+/* Work-items of a pass. */
+typedef enum vit_extent {
+    PER_SAMPLE,                /* samples / lanes */
+    PER_RUN,                   /* ceil(samples / run) */
+    PER_PATH,                  /* paths / lanes */
+    PER_PHOTON,
+    PER_MASK_WORD,
+    PER_NODE,                  /* max_nodes */
+    PER_BUCKET,                /* max_nodes * buckets */
+    PER_LEVEL_NODE,            /* nodes of the level, at most */
+    PER_PIXEL,
+    GROUP_PER_LEVEL_NODE,      /* a work-group of splat_group for each node of the level, times split */
+    ONE_GROUP,                 /* one work-group of scan_group */
+} vit_extent;
+
+/* For which levels of the hierarchy a pass runs. Neighbouring rows that are not ONCE are repeated together, level by level. */
+typedef enum vit_repeat {
+    ONCE,
+    UPWARD,                    /* last level to first */
+    LISTED,                    /* first to last; with buckets all but the last, whose photons go into buckets instead */
+    LAST,                      /* the last level only */
+} vit_repeat;
+
+#define VIT_MAX_ARGS 24
+
+typedef struct vit_pass {
+    const char *name;          /* also the kernel's */
+    uint32_t when;             /* all of these effects; ALWAYS */
+    vit_extent extent;
+    vit_repeat repeat;
+    uint64_t writes;           /* bits of vit_buffer */
+    uint8_t args[VIT_MAX_ARGS]; /* vit_buffer, up to V_END; a buffer that is not called for is passed as NULL */
+} vit_pass;
+
+extern const vit_pass vit_passes[];
+extern const uint32_t vit_pass_count;
+extern const char *const vit_buffer_names[B_COUNT];
+extern const vit_section vit_buffer_sections[B_COUNT];
+
+/* Does the frame need the pass, the buffer? */
+int vit_pass_called(uint32_t pass, const vit_limits *l);
+int vit_buffer_called(uint32_t buffer, const vit_limits *l);
+uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits *l);
+/* Name of an effect that calls for the buffer: "always", or of the first. */
+const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l);
+uint32_t vit_format_bytes(vit_format format);
+
+/* Work-items a work-group, and in all, of a pass at a level. */
+void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level, size_t *local, size_t *global);
+int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level);
+
+#endif

@@ -1,0 +1,274 @@
+/* vitrine-play: maps a pack, opens it with libvitrine, plays its frames into a sink, and says how it went.
+ * Flow: options -> pack -> vit_require -> (explain, or: arena -> vit_open -> sink -> frames -> report). */
+#include "failure.h"
+#include "options.h"
+#include "pacing.h"
+#include "pack_file.h"
+#include "report.h"
+#include "sinks/output.h"
+#include "verify.h"
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PAGE 4096 /* devices that share host memory want the framebuffer on a page */
+
+/* Everything that a run holds. */
+typedef struct player {
+    const play_options *options;
+    pack_file pack;
+    vit_open_info info;
+    vit_requirements need;
+    uint32_t first, end; /* frames of a round, checked against the pack */
+    uint64_t all;        /* frames of all rounds */
+    void *arena, *pixels;
+    vit *v;
+    void *sink; /* the sink's state */
+    bool sink_is_open;
+    report report;
+    verdict verdict;
+    pacing pacing;
+    uint64_t done; /* frames that were rendered, checked and written */
+} player;
+
+/* The one variable of the program: set by Ctrl-C and SIGTERM, read between frames. */
+static volatile sig_atomic_t stop_requested;
+
+static void request_stop(int number) {
+    (void)number;
+    stop_requested = 1;
+}
+
+/* The first Ctrl-C ends after the frame at hand; a second one, should a device or a pipe hang, ends at once. */
+static void catch_signals(void) {
+    struct sigaction stop = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction ignore = {.sa_handler = SIG_IGN}; /* a closed pipe is an error of write(), with a text */
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
+    (void)sigaction(SIGPIPE, &ignore, NULL);
+}
+
+static vit_status list_devices(vit_text *why) {
+    vit_text name;
+    uint32_t count = 0;
+    for (const char *text; (text = vit_device_name(count, &name)) != NULL; count++)
+        (void)printf("%u %s\n", count, text);
+    if (count == 0)
+        return play_fail(why, VIT_FAILED, "no OpenCL device (install a driver, PoCL for one: pocl-opencl-icd)");
+    return output_flush_stdout(why);
+}
+
+/* vit_require() with the file's name before what it says about the pack. */
+static vit_status require(player *p, vit_text *why) {
+    vit_text cause;
+    vit_status status = vit_require(&p->info, &p->need, &cause);
+    if (status == VIT_BAD_INPUT)
+        return play_fail(why, status, "%s: %s", p->options->pack, cause.text);
+    if (status != VIT_OK)
+        return play_fail(why, status, "%s", cause.text);
+    return VIT_OK;
+}
+
+static vit_status refuse_size(player *p, vit_text *why) {
+    vit_text unused;
+    char size[32] = "";
+    if (pack_file_map(p->options->pack, &p->pack, &unused) == VIT_OK) {
+        p->info = (vit_open_info){.pack = p->pack.bytes, .pack_size = p->pack.size};
+        if (require(p, &unused) == VIT_OK)
+            (void)snprintf(size, sizeof size, " (%ux%u)", p->need.width, p->need.height);
+    }
+    return play_fail(why, VIT_USAGE, "--size: the size is fixed by the pack%s: set output in the scene file and bake again",
+                     size);
+}
+
+static vit_status check_frames(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    p->first = o->first;
+    p->end = o->end == 0 ? p->need.frames : o->end;
+    if (p->first >= p->need.frames || p->end > p->need.frames)
+        return play_fail(why, VIT_USAGE, "--frames: the pack has frames 0 to %u (--frames 0:%u is all)", p->need.frames - 1,
+                         p->need.frames);
+    p->all = (uint64_t)(p->end - p->first) * o->loop;
+    return VIT_OK;
+}
+
+static vit_status take_memory(void **out, size_t size, size_t alignment, const char *what, vit_text *why) {
+    size_t rounded = size <= SIZE_MAX - alignment ? (size / alignment + 1) * alignment : 0; /* aligned_alloc wants a multiple */
+    *out = rounded != 0 ? aligned_alloc(alignment, rounded) : NULL;
+    if (*out == NULL)
+        return play_fail(why, VIT_FAILED, "out of memory: %zu bytes for the %s", size, what);
+    return VIT_OK;
+}
+
+static vit_status open_sink(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    if (o->sink->stream && pack_file_is(&p->pack, o->target))
+        return play_fail(why, VIT_USAGE, "--out %s:%s would overwrite the pack that is played", o->sink->name, o->target);
+    sink_setup setup = {.target = o->target,
+                        .width = p->need.width,
+                        .height = p->need.height,
+                        .fps = (double)p->need.fps,
+                        .frame_bytes = p->need.frame_bytes};
+    vit_status status = o->sink->open(&setup, &p->sink, why);
+    p->sink_is_open = status == VIT_OK;
+    return status;
+}
+
+/* The sink comes last: it may empty a file, so by then nothing else should fail. */
+static vit_status open_all(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    vit_status status = take_memory(&p->arena, p->need.host_bytes, 64, "library's arena", why);
+    if (status == VIT_OK)
+        status = take_memory(&p->pixels, p->need.frame_bytes, PAGE, "framebuffer", why);
+    if (status == VIT_OK) {
+        p->info.arena = p->arena;
+        p->info.arena_size = p->need.host_bytes;
+        status = vit_open(&p->info, &p->v, why);
+    }
+    p->verdict = (verdict){.compare = o->verify, .print = o->hash};
+    if (status == VIT_OK)
+        status = verdict_begin(&p->verdict, p->v, p->first, p->end, why);
+    /* A progress line would run through printed lines if both go to the terminal. */
+    bool progress = !o->quiet && isatty(STDERR_FILENO) && !o->trace && !(o->hash && isatty(STDOUT_FILENO));
+    if (status == VIT_OK)
+        status = report_begin(&p->report, p->all, o->report ? p->need.pass_count : 0, progress, why);
+    p->pacing = (pacing){.fps = o->pace ? (double)p->need.fps : 0};
+    if (status == VIT_OK)
+        status = open_sink(p, why);
+    return status;
+}
+
+static vit_status play_frame(player *p, uint32_t index, vit_text *why) {
+    double began = pacing_now_ms();
+    size_t stride = p->need.frame_bytes / p->need.height; /* rows are tightly packed, as hashes want them */
+    vit_status status = vit_frame(p->v, index, p->pixels, stride, why);
+    if (status == VIT_OK)
+        status = report_frame(&p->report, p->v, pacing_now_ms() - began, why);
+    if (status == VIT_OK)
+        status = verdict_frame(&p->verdict, p->v, index, p->pixels, p->need.frame_bytes, why);
+    if (status == VIT_OK) {
+        pacing_wait(&p->pacing, &stop_requested);
+        status = p->options->sink->write(p->sink, p->pixels, index, why);
+    }
+    if (status == VIT_OK)
+        report_progress(&p->report, ++p->done, p->all);
+    return status;
+}
+
+static vit_status play_frames(player *p, vit_text *why) {
+    uint32_t length = p->end - p->first;
+    vit_status status = VIT_OK;
+    while (status == VIT_OK && p->done < p->all && !stop_requested)
+        if (p->options->trace)
+            status = trace_frames(p->v, &p->need, p->first, p->end, &stop_requested, &p->done, why);
+        else
+            status = play_frame(p, p->first + (uint32_t)(p->done % length), why);
+    return status;
+}
+
+/* What is said at the end, also of a run that was interrupted. */
+static vit_status conclude(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    vit_statistics s;
+    vit_status status = vit_stats(p->v, &s, why);
+    if (status != VIT_OK)
+        return status;
+    FILE *to = o->hash || sink_uses_stdout(o->sink, o->target) ? stderr : stdout;
+    if (o->report)
+        report_print(&p->report, &p->need, &s, p->pacing.late, o->pace, to);
+    report_dropped(&s, stderr);
+    if (p->done < p->all)
+        return play_fail(why, VIT_FAILED, "interrupted at frame %u", p->first + (uint32_t)(p->done % (p->end - p->first)));
+    status = verdict_end(&p->verdict, why);
+    if (status == VIT_OK && !o->quiet && !o->trace) {
+        if (p->pacing.late > 0)
+            (void)fprintf(stderr, "%" PRIu64 " frames were late\n", p->pacing.late);
+        report_summary(&p->report,
+                       o->verify                 ? "; every hash is the pack's"
+                       : o->out_given || o->hash ? ""
+                                                 : "; none kept (no --out)",
+                       stderr);
+    }
+    return status;
+}
+
+static vit_status play(player *p, vit_text *why) {
+    vit_status status = open_all(p, why);
+    if (status == VIT_OK)
+        status = play_frames(p, why);
+    report_progress_clear(&p->report);
+    if (p->sink_is_open) {
+        vit_text late; /* the first failure is the one to tell */
+        vit_status closed = p->options->sink->close(p->sink, &late);
+        if (status == VIT_OK && closed != VIT_OK)
+            status = play_fail(why, closed, "%s", late.text);
+    }
+    if (status == VIT_OK)
+        status = conclude(p, why);
+    vit_close(p->v);
+    report_free(&p->report);
+    free(p->pixels);
+    free(p->arena);
+    return status;
+}
+
+static vit_status run_pack(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    if (o->size != NULL)
+        return refuse_size(p, why);
+    vit_status status = pack_file_map(o->pack, &p->pack, why);
+    if (status != VIT_OK)
+        return status;
+    p->info = (vit_open_info){.pack = p->pack.bytes,
+                              .pack_size = p->pack.size,
+                              .device = o->device,
+                              .lanes = o->lanes,
+                              .group = o->group,
+                              .format = o->format,
+                              .view = o->view,
+                              .profile = o->report,
+                              .max_nodes = o->max_nodes,
+                              .max_list = o->max_list};
+    status = require(p, why);
+    if (status == VIT_OK && o->explain) {
+        report_explain(o->pack, p->pack.size, &p->need, stdout);
+        return VIT_OK;
+    }
+    if (status == VIT_OK)
+        status = check_frames(p, why);
+    if (status == VIT_OK)
+        status = play(p, why);
+    return status;
+}
+
+static vit_status run(const play_options *o, vit_text *why) {
+    if (o->help) {
+        options_help(stdout);
+        return VIT_OK;
+    }
+    if (o->version) {
+        (void)puts("vitrine-play " VIT_VERSION);
+        return VIT_OK;
+    }
+    if (o->list_devices)
+        return list_devices(why);
+    player p = {.options = o};
+    vit_status status = run_pack(&p, why);
+    pack_file_unmap(&p.pack);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    vit_text why = {""};
+    play_options options;
+    catch_signals();
+    vit_status status = options_parse(argc, argv, &options, &why);
+    if (status == VIT_OK)
+        status = run(&options, &why);
+    if (status == VIT_OK)
+        status = output_flush_stdout(&why); /* a full disk behind stdout shows only here */
+    if (status != VIT_OK)
+        (void)fprintf(stderr, "vitrine-play: %s\n", why.text);
+    return (int)status;
+}

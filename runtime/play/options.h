@@ -1,0 +1,32 @@
+/* options.c: the command line as plain data. */
+#ifndef VIT_PLAY_OPTIONS_H
+#define VIT_PLAY_OPTIONS_H
+
+#include "vitrine.h"
+#include "sinks/sink.h"
+#include <stdio.h>
+
+typedef struct play_options {
+    const char *pack;      /* file; NULL only with help, version, list_devices */
+    const sink_kind *sink; /* never NULL */
+    const char *target;    /* the sink's; "" if it takes none */
+    bool out_given;
+    uint32_t first, end; /* frames first .. end - 1; end == 0: to the path's end */
+    uint32_t loop;       /* times the range is played, >= 1 */
+    vit_view view;
+    vit_format format;
+    uint32_t device, lanes, group, max_nodes, max_list; /* as in vit_open_info */
+    const char *size;                                   /* not NULL: was asked for, and will be refused */
+    bool verify, hash, trace, pace, report, explain, list_devices, quiet, version, help;
+} play_options;
+
+/* VIT_USAGE: `why` says which option and what it takes. All that needs no pack is checked here. Keeps pointers into `argv`. */
+vit_status options_parse(int argc, char **argv, play_options *out, vit_text *why);
+
+/* The whole page: synopsis, options, sinks, views, formats, examples, exit codes. */
+void options_help(FILE *to);
+
+/* Lower-case name, as --format takes it. */
+const char *options_format_name(vit_format format);
+
+#endif

@@ -1,0 +1,42 @@
+/* report.c: what the player says: progress, tables, the summary. */
+#ifndef VIT_PLAY_REPORT_H
+#define VIT_PLAY_REPORT_H
+
+#include "vitrine.h"
+#include <stdbool.h>
+#include <stdio.h>
+
+/* Times of the last frames. Memory is taken once, at the start. */
+typedef struct report {
+    uint32_t passes;  /* columns of pass_ms; 0: passes are not timed */
+    uint32_t room;    /* frames that fit; older ones are overwritten */
+    uint64_t frames;  /* frames so far */
+    double *frame_ms; /* [room] */
+    double *pass_ms;  /* [passes][room] */
+    double *sorted;   /* [room], for medians */
+    double began_ms;  /* when the first frame was begun */
+    bool progress;    /* draw a progress line on stderr */
+    double drawn_ms;  /* when it was last drawn; 0: not at all */
+} report;
+
+/* `frames`: how many will be played. `passes`: 0, or vit_requirements.pass_count with a profiled vit. */
+vit_status report_begin(report *r, uint64_t frames, uint32_t passes, bool progress, vit_text *why);
+/* Notes a frame that took `ms`; with passes, reads their times back from `v`. */
+vit_status report_frame(report *r, vit *v, double ms, vit_text *why);
+void report_free(report *r);
+
+/* Frame `done` of `all` is finished; drawn a few times a second. report_progress_clear() makes room for other text. */
+void report_progress(report *r, uint64_t done, uint64_t all);
+void report_progress_clear(report *r);
+
+/* --report: time a pass, memory a buffer, work of the last frame. */
+void report_print(const report *r, const vit_requirements *need, const vit_statistics *s, uint64_t late, bool paced, FILE *to);
+/* One line: frames, seconds, frames a second; `end` closes it. */
+void report_summary(const report *r, const char *end, FILE *to);
+/* One line if a bound dropped anything, else nothing. */
+void report_dropped(const vit_statistics *s, FILE *to);
+
+/* --explain. `file` names the pack, `pack_bytes` is its size. */
+void report_explain(const char *file, size_t pack_bytes, const vit_requirements *need, FILE *to);
+
+#endif

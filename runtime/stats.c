@@ -1,0 +1,35 @@
+/* vit_stats: reads the counters back; not for the frame loop. */
+#include "vit.h"
+#include <string.h>
+
+vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
+    uint32_t c[2 * VIT_COUNTER_COUNT];
+    const uint32_t *total = c + VIT_COUNTER_COUNT;
+    memset(out, 0, sizeof *out);
+    cl_int e = clEnqueueReadBuffer(v->device.queue, v->device.buffers[B_counters], CL_TRUE, 0, sizeof c, c, 0, NULL, NULL);
+    if (e != CL_SUCCESS)
+        return vit_cl_failed(why, "reading the counters", e);
+    const vit_photon *baked = v->pack.section[VIT_SECTION_PHOT];
+    out->frames = v->frames;
+    out->nodes = c[VIT_COUNTER_nodes];
+    out->clusters = c[VIT_COUNTER_clusters];
+    out->photons = c[VIT_COUNTER_photons];
+    for (uint32_t i = 0; i < v->pack.scene->baked; i++)
+        out->photons += baked[i].radius2 > 0;
+    out->list = c[VIT_COUNTER_list];
+    out->pairs = c[VIT_COUNTER_pairs];
+    out->largest = c[VIT_COUNTER_largest];
+    out->slice_min = c[VIT_COUNTER_slice_min];
+    out->slice_max = c[VIT_COUNTER_slice_max];
+    out->max_nodes = total[VIT_COUNTER_nodes];
+    out->max_list = total[VIT_COUNTER_list];
+    out->dropped_samples = total[VIT_COUNTER_dropped_samples];
+    out->dropped_entries = total[VIT_COUNTER_dropped_entries];
+    for (uint32_t p = 0; p < vit_pass_count; p++) {
+        if (!vit_pass_called(p, &v->limits))
+            continue;
+        out->pass_names[out->pass_count] = vit_passes[p].name;
+        out->pass_ms[out->pass_count++] = v->pass_ms[p];
+    }
+    return VIT_OK;
+}

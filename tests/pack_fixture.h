@@ -1,0 +1,214 @@
+/* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
+ * light whose photons are baked and a moving point light whose photons are traced, two frames. Every float is exact in binary,
+ * so the pack has the same bytes with every compiler. */
+#ifndef VIT_TESTS_PACK_FIXTURE_H
+#define VIT_TESTS_PACK_FIXTURE_H
+
+#include "pack_write.h"
+
+#include <string.h>
+
+enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4 };
+
+typedef struct pack_fixture {
+    vit_scene scene;
+    vit_camera cameras[FIXTURE_FRAMES];
+    vit_light lights[FIXTURE_FRAMES * FIXTURE_LIGHTS];
+    vit_triangle triangles[FIXTURE_TRIANGLES]; /* 12 in use for the cube */
+    vit_attributes attributes[FIXTURE_TRIANGLES];
+    vit_bvh_node nodes[FIXTURE_TRIANGLES]; /* 5 in use for the cube */
+    vit_material materials[2];
+    vit_texture textures[1];
+    vit_mip mips[3];
+    vit_u32 texels[FIXTURE_TEXELS];
+    vit_photon photons[FIXTURE_BAKED];
+    vit_gold golds[FIXTURE_FRAMES];
+} pack_fixture;
+
+static inline void fixture_triangle(vit_triangle *t, const float a[3], const float b[3], const float c[3]) {
+    float u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        t->v0[k] = a[k];
+        t->v1[k] = b[k];
+        t->v2[k] = c[k];
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+    }
+    t->nx = u[1] * v[2] - u[2] * v[1];
+    t->ny = u[2] * v[0] - u[0] * v[2];
+    t->nz = u[0] * v[1] - u[1] * v[0];
+}
+
+/* The cube -1..1, two triangles a side, in the order x-, x+, y-, y+, z-, z+; a corner's bits say its x, y and z. */
+static inline void fixture_cube(pack_fixture *f) {
+    static const int corners[6][4] = {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}};
+    for (int side = 0; side < 6; side++) {
+        float p[4][3];
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 3; k++)
+                p[i][k] = corners[side][i] >> k & 1 ? 1.0f : -1.0f;
+        fixture_triangle(&f->triangles[2 * side], p[0], p[1], p[2]);
+        fixture_triangle(&f->triangles[2 * side + 1], p[0], p[2], p[3]);
+    }
+    f->scene.triangles = 12;
+}
+
+/* Box of the sides first..last of the cube: flat only if it is one side alone; grown by the pad. */
+static inline void fixture_side_box(float lo[3], float hi[3], int first, int last, float pad) {
+    for (int k = 0; k < 3; k++) {
+        const float least = first == last && first / 2 == k && first % 2 == 1 ? 1.0f : -1.0f;
+        const float most = first == last && first / 2 == k && first % 2 == 0 ? -1.0f : 1.0f;
+        lo[k] = least - pad;
+        hi[k] = most + pad;
+    }
+}
+
+/* Depth first by hand:  0 = (1, 3)   1 = (side 0, 2)   2 = (side 1, side 2)   3 = (side 3, 4)   4 = (side 4, side 5).
+ * A row: first and last side of each child, and its node or 0 for a leaf of one side. */
+static inline void fixture_tree(pack_fixture *f) {
+    static const struct {
+        int first, last;
+        vit_u32 node;
+    } children[5][2] = {
+        {{0, 2, 1}, {3, 5, 3}}, {{0, 0, 0}, {1, 2, 2}}, {{1, 1, 0}, {2, 2, 0}}, {{3, 3, 0}, {4, 5, 4}}, {{4, 4, 0}, {5, 5, 0}}};
+    for (int i = 0; i < 5; i++) {
+        vit_bvh_node *n = &f->nodes[i];
+        vit_u32 words[2];
+        for (int c = 0; c < 2; c++)
+            words[c] = children[i][c].node ? children[i][c].node
+                                           : VIT_LEAF_BIT | 1u << VIT_LEAF_SHIFT | (vit_u32)(2 * children[i][c].first);
+        n->child0 = words[0];
+        n->child1 = words[1];
+        fixture_side_box(n->lo0, n->hi0, children[i][0].first, children[i][0].last, f->scene.box_pad);
+        fixture_side_box(n->lo1, n->hi1, children[i][1].first, children[i][1].last, f->scene.box_pad);
+    }
+    f->scene.nodes = 5;
+}
+
+static inline void fixture_scene(vit_scene *s) {
+    *s = (vit_scene){.width = 64,
+                     .height = 48,
+                     .frames = FIXTURE_FRAMES,
+                     .fps = 30,
+                     .tile = 16,
+                     .effects = VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_SPOT | VIT_EFFECT_BIT_RANGE | VIT_EFFECT_BIT_TEXTURES |
+                                VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST,
+                     .materials = 2,
+                     .textures = 1,
+                     .mips = 3,
+                     .texels = FIXTURE_TEXELS,
+                     .lights = FIXTURE_LIGHTS,
+                     .paths = 16,
+                     .baked = FIXTURE_BAKED,
+                     .bounces = 3,
+                     .radius = 0.5f,
+                     .ray_offset = 0x1p-12f,
+                     .box_pad = 0x1p-20f,
+                     .slice_count = 5,
+                     .slice_near = 0.125f,
+                     .slice_scale = 2,
+                     .background = {0.25f, 0.5f, 1},
+                     .max_nodes = 64,
+                     .max_list = 1000};
+}
+
+static inline void fixture_frames(pack_fixture *f) {
+    for (vit_u32 i = 0; i < FIXTURE_FRAMES; i++) {
+        f->cameras[i] = (vit_camera){.eye = {0, 0, 0.5f},
+                                     .exposure = 1,
+                                     .corner = {-1, 0.75f, -1},
+                                     .right = {0x1p-5f, 0, 0},
+                                     .down = {0, -0x1p-5f, 0},
+                                     .forward = {0, 0, -1}};
+        f->lights[FIXTURE_LIGHTS * i] = (vit_light){.position = {0, 0.5f, 0},
+                                                    .kind = VIT_LIGHT_SPOT,
+                                                    .direction = {0, -1, 0},
+                                                    .cos_outer = 0.5f,
+                                                    .intensity = {1, 2, 4},
+                                                    .spot_scale = 2,
+                                                    .spot_offset = -1,
+                                                    .inv_range2 = 0.0625f};
+        f->lights[FIXTURE_LIGHTS * i + 1] = (vit_light){.position = {i ? 0.5f : -0.5f, 0, 0},
+                                                        .kind = VIT_LIGHT_POINT,
+                                                        .cos_outer = -1,
+                                                        .intensity = {8, 8, 8},
+                                                        .falloff = VIT_FALLOFF_INVERSE_SQUARE,
+                                                        .path_first = 0,
+                                                        .path_count = 16};
+        f->golds[i] = (vit_gold){
+            .xrgb8888 = {i + 1, 2}, .nodes = 7, .clusters = 4, .photons = 20, .list = 60, .pairs = 60, .largest = 19};
+    }
+}
+
+static inline void fixture_surfaces(pack_fixture *f) {
+    f->materials[0] = (vit_material){.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE};
+    f->materials[1] = (vit_material){.albedo = {1, 1, 1}, .texture = 0};
+    f->textures[0] = (vit_texture){.mip_count = 3, .wrap_u = VIT_WRAP_REPEAT, .wrap_v = VIT_WRAP_CLAMP};
+    vit_u32 first = 0; /* word of the mip's top left gutter corner */
+    for (vit_u32 i = 0; i < 3; i++) {
+        const vit_u32 edge = 4u >> i, pitch = edge + 2;
+        f->mips[i] = (vit_mip){.offset = first + pitch + 1, .width = edge, .height = edge, .pitch = pitch};
+        first += pitch * pitch;
+    }
+    for (vit_u32 i = 0; i < FIXTURE_TEXELS; i++)
+        f->texels[i] = 0x80000000u | i * 0x00100401u;
+    for (vit_u32 i = 0; i < FIXTURE_TRIANGLES; i++)
+        f->attributes[i] =
+            (vit_attributes){.normal = {0x7fff, 0x7fff, 0x7fff}, .material = i % 2, .uv = {{0, 0}, {1, 0}, {0, 1}}};
+    for (int i = 0; i < FIXTURE_BAKED; i++)
+        f->photons[i] = (vit_photon){.position = {0.25f * (float)i, -1, 0},
+                                     .radius2 = 0.25f,
+                                     .direction = {0, -1, 0},
+                                     .inv_radius2 = 4,
+                                     .power = {1, 0.5f, 0.25f}};
+    f->photons[FIXTURE_BAKED - 1] = (vit_photon){.radius2 = -1}; /* an empty slot */
+}
+
+static inline void fixture_make(pack_fixture *f) {
+    memset(f, 0, sizeof *f);
+    fixture_scene(&f->scene);
+    fixture_cube(f);
+    fixture_tree(f);
+    fixture_frames(f);
+    fixture_surfaces(f);
+    vit_pack_derive(&f->scene, NULL);
+}
+
+/* Replaces the cube by `depth` + 1 triangles side by side and a tree that is a chain of `depth` inner nodes (1..95). */
+static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
+    fixture_make(f);
+    const float pad = f->scene.box_pad, end = (float)depth + 0.5f;
+    for (vit_u32 i = 0; i <= depth; i++) {
+        const float x = (float)i, a[3] = {x, 0, 0}, b[3] = {x + 0.5f, 0, 0}, c[3] = {x, 0.5f, 0};
+        fixture_triangle(&f->triangles[i], a, b, c);
+    }
+    for (vit_u32 i = 0; i < depth; i++) {
+        const float x = (float)i;
+        f->nodes[i] = (vit_bvh_node){.lo0 = {x - pad, -pad, -pad},
+                                     .hi0 = {x + 0.5f + pad, 0.5f + pad, pad},
+                                     .lo1 = {x + 1 - pad, -pad, -pad},
+                                     .hi1 = {end + pad, 0.5f + pad, pad},
+                                     .child0 = VIT_LEAF_BIT | i,
+                                     .child1 = i + 1 < depth ? i + 1 : VIT_LEAF_BIT | depth};
+    }
+    f->scene.triangles = depth + 1;
+    f->scene.nodes = depth;
+}
+
+static inline vit_status fixture_assemble(const pack_fixture *f, void **bytes, size_t *size, vit_text *why) {
+    const pack_sections sections = {.data = {[VIT_SECTION_META] = &f->scene,
+                                             [VIT_SECTION_CAMS] = f->cameras,
+                                             [VIT_SECTION_LITE] = f->lights,
+                                             [VIT_SECTION_GEOM] = f->triangles,
+                                             [VIT_SECTION_ATTR] = f->attributes,
+                                             [VIT_SECTION_BVHN] = f->nodes,
+                                             [VIT_SECTION_MATL] = f->materials,
+                                             [VIT_SECTION_TEXR] = f->textures,
+                                             [VIT_SECTION_MIPS] = f->mips,
+                                             [VIT_SECTION_ATLS] = f->texels,
+                                             [VIT_SECTION_PHOT] = f->photons,
+                                             [VIT_SECTION_GOLD] = f->golds}};
+    return pack_assemble(&sections, bytes, size, why);
+}
+
+#endif

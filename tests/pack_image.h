@@ -1,0 +1,101 @@
+/* A pack in memory that tests can spoil, and what its refusal must look like. Each image is a heap block of exactly its size,
+ * so that a sanitizer sees any reading beyond it. */
+#ifndef VIT_TESTS_PACK_IMAGE_H
+#define VIT_TESTS_PACK_IMAGE_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "pack_fixture.h"
+#include "pack_read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* An image and where its sections are, for spoiling. */
+typedef struct image {
+    void *bytes;
+    size_t size;
+    vit_pack_header *header;
+    vit_pack_entry *table;
+    vit_scene *scene;
+    vit_camera *cameras;
+    vit_light *lights;
+    vit_triangle *triangles;
+    vit_attributes *attributes;
+    vit_bvh_node *nodes;
+    vit_material *materials;
+    vit_texture *textures;
+    vit_mip *mips;
+    vit_photon *photons;
+    vit_gold *golds;
+} image;
+
+static inline void *section(const image *im, int i) {
+    return (char *)im->bytes + im->table[i].offset;
+}
+
+static inline image image_of(const pack_fixture *f) {
+    image im = {0};
+    vit_text why = {""};
+    assert_int_equal(fixture_assemble(f, &im.bytes, &im.size, &why), VIT_OK);
+    im.header = im.bytes;
+    im.table = (vit_pack_entry *)(im.header + 1);
+    im.scene = section(&im, VIT_SECTION_META);
+    im.cameras = section(&im, VIT_SECTION_CAMS);
+    im.lights = section(&im, VIT_SECTION_LITE);
+    im.triangles = section(&im, VIT_SECTION_GEOM);
+    im.attributes = section(&im, VIT_SECTION_ATTR);
+    im.nodes = section(&im, VIT_SECTION_BVHN);
+    im.materials = section(&im, VIT_SECTION_MATL);
+    im.textures = section(&im, VIT_SECTION_TEXR);
+    im.mips = section(&im, VIT_SECTION_MIPS);
+    im.photons = section(&im, VIT_SECTION_PHOT);
+    im.golds = section(&im, VIT_SECTION_GOLD);
+    return im;
+}
+
+static inline image valid_image(void) {
+    pack_fixture *f = malloc(sizeof *f);
+    assert_non_null(f);
+    fixture_make(f);
+    image im = image_of(f);
+    free(f);
+    return im;
+}
+
+/* Makes every hash right again, as far as the table's places lie in the file. */
+static inline void forge(image *im) {
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        vit_pack_entry *e = &im->table[i];
+        if (e->offset <= im->size && e->size <= im->size - e->offset)
+            e->hash = vit_hash(section(im, i), (size_t)e->size);
+    }
+    im->header->table_hash = vit_hash(im->table, VIT_SECTION_COUNT * sizeof *im->table);
+}
+
+static inline vit_status read_image(const image *im, vit_text *why) {
+    vit_pack pack;
+    vit_text silent = {""};
+    *why = silent;
+    return vit_pack_read(im->bytes, im->size, &pack, why);
+}
+
+static inline void assert_one_line(const vit_text *why) {
+    assert_non_null(memchr(why->text, 0, sizeof why->text));
+    assert_true(strncmp(why->text, "pack: ", 6) == 0);
+    assert_null(strchr(why->text, '\n'));
+}
+
+/* `place` is "header" or a section's code; `cause` a part of the line. */
+static inline void assert_refused(vit_status status, const vit_text *why, const char *place, const char *cause) {
+    char start[32];
+    snprintf(start, sizeof start, place[0] == 'h' ? "pack: %s: " : "pack: section %s: ", place);
+    if (status != VIT_BAD_INPUT || strncmp(why->text, start, strlen(start)) != 0 || !strstr(why->text, cause))
+        fail_msg("expected '%s...%s...', got %d '%s'", start, cause, (int)status, why->text);
+    assert_one_line(why);
+}
+
+#endif

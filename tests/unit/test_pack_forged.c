@@ -1,0 +1,374 @@
+/* The loader against forged packs: a valid pack is spoilt in one place and gets right hashes again, so that the checks behind
+ * the hashes are reached. Each must be refused for its own reason, in one line that names the section; the part of the line
+ * stands beside the damage, so that no fault can hide behind another. Run it with config=sanitize as well. */
+#include "pack_image.h"
+
+#include <float.h>
+#include <math.h>
+
+/* X(place, name, part of the line, damage done to `im`) */
+
+#define ADD(count, by) im->scene->count += by
+#define EFFECTS(on, off) im->scene->effects = (im->scene->effects | (on)) & ~(vit_u32)(off)
+#define BIT(name) VIT_EFFECT_BIT_##name
+#define ENTRY(code) im->table[VIT_SECTION_##code]
+
+#define CONTAINER_FAULTS(X)                                                                                                    \
+    X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
+    X(header, newer_version, "version 2", im->header->version = 2)                                                             \
+    X(header, too_few_sections, "11 sections", im->header->sections = 11)                                                      \
+    X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
+    X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
+    X(header, reserved_byte, "reserved", im->header->zero[31] = 1)                                                             \
+    X(CAMS, unknown_code, "not at its place", ENTRY(CAMS).code[3] = 'X')                                                       \
+    X(CAMS, sections_swapped, "not at its place", swap_entries(im, VIT_SECTION_CAMS, VIT_SECTION_LITE))                        \
+    X(LITE, section_twice, "not at its place", ENTRY(LITE) = ENTRY(CAMS))                                                      \
+    X(GEOM, other_record_size, "records of 44 bytes", ENTRY(GEOM).record = 44)                                                 \
+    X(META, offset_into_the_table, "overlaps", ENTRY(META).offset = 0)                                                         \
+    X(ATTR, misaligned_offset, "multiple of 4096", ENTRY(ATTR).offset += 16)                                                   \
+    X(ATTR, overlap, "overlaps", ENTRY(ATTR).offset = ENTRY(GEOM).offset)                                                      \
+    X(MATL, overlap_backwards, "overlaps", ENTRY(MATL).offset = ENTRY(META).offset)                                            \
+    X(BVHN, offset_beyond_the_file, "beyond the end", ENTRY(BVHN).offset += (uint64_t)1 << 40)                                 \
+    X(BVHN, huge_offset, "beyond the end", ENTRY(BVHN).offset = UINT64_MAX - 4095)                                             \
+    X(BVHN, huge_size_that_wraps, "beyond the end", ENTRY(BVHN).size = UINT64_MAX - ENTRY(BVHN).offset + 5)                    \
+    X(GOLD, size_one_too_large, "beyond the end", ENTRY(GOLD).size += 1)                                                       \
+    X(GEOM, size_short_by_a_record, "but META counts", shorten(im, VIT_SECTION_GEOM, sizeof(vit_triangle)))                    \
+    X(GEOM, size_short_by_a_byte, "the gap before it", ENTRY(LITE).size -= 32, poke(im, ENTRY(GEOM).offset - 1))               \
+    X(CAMS, gap_not_zero, "the gap before it", poke(im, ENTRY(CAMS).offset - 1))                                               \
+    X(META, gap_not_zero_after_table, "the gap before it", poke(im, 1000))                                                     \
+    X(META, too_short, "expected", shorten(im, VIT_SECTION_META, 16))
+
+#define META_FAULTS(X)                                                                                                         \
+    X(META, no_width, "width", im->scene->width = 0)                                                                           \
+    X(META, huge_width, "width", im->scene->width = 0xffffffff)                                                                \
+    X(META, huge_height, "height", im->scene->height = 4321)                                                                   \
+    X(META, no_frames, "frames", im->scene->frames = 0)                                                                        \
+    X(META, huge_frames, "frames", im->scene->frames = 0xffffffff)                                                             \
+    X(META, odd_tile, "tile", im->scene->tile = 24)                                                                            \
+    X(META, no_triangles, "triangles", im->scene->triangles = 0)                                                               \
+    X(META, huge_triangles, "triangles", im->scene->triangles = 0xffffffff)                                                    \
+    X(META, huge_nodes, "nodes", im->scene->nodes = 0xffffffff)                                                                \
+    X(META, no_materials, "materials", im->scene->materials = 0)                                                               \
+    X(META, huge_materials, "materials", im->scene->materials = 0xffffffff)                                                    \
+    X(META, huge_textures, "textures", im->scene->textures = 0xffffffff)                                                       \
+    X(META, huge_mips, "mips", im->scene->mips = 0xffffffff)                                                                   \
+    X(META, huge_texels, "texels", im->scene->texels = 0xffffffff)                                                             \
+    X(META, huge_lights, "lights", im->scene->lights = 65)                                                                     \
+    X(META, huge_paths, "paths", im->scene->paths = 0xffffffff)                                                                \
+    X(META, huge_baked, "baked", im->scene->baked = 0xffffffff)                                                                \
+    X(META, no_bounces, "bounces", im->scene->bounces = 0)                                                                     \
+    X(META, huge_bounces, "bounces", im->scene->bounces = 33)                                                                  \
+    X(META, too_many_photons, "photons", im->scene->paths = 1000000, im->scene->bounces = 32, im->scene->baked = 1 << 22)      \
+    X(META, no_slices, "slice_count", im->scene->slice_count = 0)                                                              \
+    X(META, huge_slices, "slice_count", im->scene->slice_count = 4097)                                                         \
+    X(META, too_many_key_bits, "key_bits", im->scene->slice_count = 4096, im->scene->width = 7680, im->scene->height = 4320,   \
+      im->scene->tile = 8)                                                                                                     \
+    X(META, wrong_tiles, "tiles_x", ADD(tiles_x, 1))                                                                           \
+    X(META, wrong_samples, "samples", ADD(samples, 64))                                                                        \
+    X(META, wrong_photons, "photons", ADD(photons, 1))                                                                         \
+    X(META, wrong_key_bits, "key_bits", ADD(key_bits, 1))                                                                      \
+    X(META, wrong_key_bits_of_z, "key_bits_z", ADD(key_bits_z, 1))                                                             \
+    X(META, wrong_levels, "levels", ADD(levels, 1))                                                                            \
+    X(META, wrong_mask_words, "mask_words", im->scene->mask_words = 0xffffffff)                                                \
+    X(META, wrong_level_first, "level_first", im->scene->level_first[1] = 0)                                                   \
+    X(META, unused_level_first, "level_first", im->scene->level_first[6] = 1)                                                  \
+    X(META, fps_of_0, "fps", im->scene->fps = 0)                                                                               \
+    X(META, fps_of_nan, "fps", im->scene->fps = NAN)                                                                           \
+    X(META, fps_of_1001, "fps", im->scene->fps = 1001)                                                                         \
+    X(META, radius_of_0_with_photons, "radius", im->scene->radius = 0)                                                         \
+    X(META, infinite_radius, "radius", im->scene->radius = INFINITY)                                                           \
+    X(META, negative_flatten, "flatten", im->scene->flatten = -1)                                                              \
+    X(META, negative_ray_offset, "ray_offset", im->scene->ray_offset = -1)                                                     \
+    X(META, nan_box_pad, "box_pad", im->scene->box_pad = NAN)                                                                  \
+    X(META, slice_near_of_0, "slice_near", im->scene->slice_near = 0)                                                          \
+    X(META, negative_slice_scale, "slice_scale", im->scene->slice_scale = -2)                                                  \
+    X(META, infinite_background, "background green", im->scene->background[1] = INFINITY)                                      \
+    X(META, unknown_effect, "unknown effects 0x80000000", EFFECTS(0x80000000u, 0))                                             \
+    X(META, list_and_buckets, "exclude", EFFECTS(BIT(BUCKETS), 0))                                                             \
+    X(META, neither_list_nor_buckets, "without LIST or BUCKETS", EFFECTS(0, BIT(LIST)))                                        \
+    X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
+    X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
+    X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
+    X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
+    X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
+    X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu), im->scene->paths = im->scene->baked = 0,           \
+      vit_pack_derive(im->scene, NULL))                                                                                        \
+    X(META, textures_effect_without_textures, "without a texture", im->scene->textures = 0)                                    \
+    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, 0x7fffff80 | BIT(PHOTONS)),                     \
+      im->scene->paths = 0, vit_pack_derive(im->scene, NULL))                                                                  \
+    X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
+    X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
+    X(META, huge_max_list, "max_list", im->scene->max_list = 0xffffffff)                                                       \
+    X(META, huge_slice_first, "slice_first", im->scene->slice_first = 0xffffffff)                                              \
+    X(META, leaf_words_in_use, "reserved", im->scene->leaf_words = 1)                                                          \
+    X(META, reserved_in_use, "reserved", im->scene->reserved[3] = 1)                                                           \
+    X(CAMS, one_frame_more, "META counts 3 records", ADD(frames, 1))                                                           \
+    X(LITE, one_light_more, "META counts 6 records", ADD(lights, 1))                                                           \
+    X(GEOM, one_triangle_more, "META counts 13 records", ADD(triangles, 1))                                                    \
+    X(GEOM, most_triangles, "META counts 134217728 records", im->scene->triangles = VIT_MAX_TRIANGLES)                         \
+    X(BVHN, one_node_less, "META counts 4 records", im->scene->nodes--)                                                        \
+    X(MATL, most_materials, "META counts 16777216 records", im->scene->materials = VIT_MATERIAL_INDEX + 1)                     \
+    X(MIPS, one_mip_more, "META counts 4 records", ADD(mips, 1))                                                               \
+    X(ATLS, most_texels, "META counts 2147483647 records", im->scene->texels = 0x7fffffff)                                     \
+    X(PHOT, one_photon_more, "META counts 5 records", ADD(baked, 1), ADD(photons, 1))
+
+#define RECORD_FAULTS(X)                                                                                                       \
+    X(CAMS, eye_is_nan, "camera 1: a vector is not finite", im->cameras[1].eye[2] = NAN)                                       \
+    X(CAMS, right_is_infinite, "camera 0: a vector is not finite", im->cameras[0].right[0] = -INFINITY)                        \
+    X(CAMS, forward_too_long, "forward is not a unit", im->cameras[1].forward[2] = -1.002f)                                    \
+    X(CAMS, forward_is_nan, "forward is not a unit", im->cameras[1].forward[0] = NAN)                                          \
+    X(CAMS, negative_exposure, "exposure", im->cameras[0].exposure = -1)                                                       \
+    X(CAMS, padding_in_use, "padding", im->cameras[1].pad3 = 1)                                                                \
+    X(LITE, unknown_kind, "frame 0, light 0: unknown kind", im->lights[0].kind = 2)                                            \
+    X(LITE, unknown_falloff, "frame 1, light 1: unknown falloff", im->lights[3].falloff = 2)                                   \
+    X(LITE, position_is_nan, "frame 1, light 0: position", im->lights[2].position[1] = NAN)                                    \
+    X(LITE, spot_without_direction, "not a unit vector", im->lights[0].direction[1] = 0)                                       \
+    X(LITE, cosine_above_1, "cos_outer", im->lights[0].cos_outer = 1.5f)                                                       \
+    X(LITE, spot_scale_is_infinite, "spot_scale", im->lights[0].spot_scale = INFINITY)                                         \
+    X(LITE, negative_intensity, "intensity", im->lights[1].intensity[2] = -1)                                                  \
+    X(LITE, negative_range, "inv_range2", im->lights[1].inv_range2 = -1)                                                       \
+    X(LITE, padding_in_use, "padding", im->lights[1].pad[2] = 1)                                                               \
+    X(LITE, spot_without_its_effect, "without the effect SPOT", EFFECTS(0, BIT(SPOT)))                                         \
+    X(LITE, range_without_its_effect, "without the effect RANGE", EFFECTS(0, BIT(RANGE)))                                      \
+    X(LITE, paths_beyond_the_last, "beyond", im->lights[1].path_first = 1)                                                     \
+    X(LITE, path_sum_that_wraps, "beyond", im->lights[1].path_first = 0xfffffff8, im->lights[1].path_count = 16)               \
+    X(LITE, paths_change_with_the_frame, "frame 1, light 1: paths differ", im->lights[3].path_count = 15)                      \
+    X(LITE, paths_shared, "lights 0 and 1 share", im->lights[0].path_count = im->lights[2].path_count = 1)                     \
+    X(LITE, paths_of_no_light, "15 photon paths", im->lights[1].path_count = im->lights[3].path_count = 15)                    \
+    X(GEOM, vertex_is_nan, "triangle 11: vertex is not finite", im->triangles[11].v2[2] = NAN)                                 \
+    X(GEOM, vertex_is_infinite, "triangle 0: vertex is not finite", im->triangles[0].v0[0] = INFINITY)                         \
+    X(GEOM, normal_is_nan, "triangle 3: normal is not finite", im->triangles[3].ny = NAN)                                      \
+    X(GEOM, normal_is_0, "triangle 0: normal is 0", im->triangles[0].nx = im->triangles[0].ny = im->triangles[0].nz = 0)       \
+    X(ATTR, unknown_material, "triangle 2: material 2 of 2", im->attributes[2].material = 2)                                   \
+    X(ATTR, huge_material, "material 16777215 of 2", im->attributes[0].material = 0xffffff)                                    \
+    X(ATTR, unknown_flag, "unknown flags", im->attributes[0].material |= 0x20000000)                                           \
+    X(ATTR, uv_is_nan, "triangle 11: a texture coordinate", im->attributes[11].uv[2][1] = NAN)                                 \
+    X(ATTR, first_uv_is_infinite, "triangle 1: a texture coordinate", im->attributes[1].uv[0][0] = INFINITY)                   \
+    X(ATTR, padding_in_use, "padding", im->attributes[0].pad[1] = 1)                                                           \
+    X(MATL, albedo_above_1, "material 1: albedo", im->materials[1].albedo[2] = 1.5f)                                           \
+    X(MATL, albedo_is_nan, "material 0: albedo", im->materials[0].albedo[0] = NAN)                                             \
+    X(MATL, negative_emission, "emission", im->materials[0].emission[0] = -1)                                                  \
+    X(MATL, infinite_emission, "emission", im->materials[0].emission[0] = INFINITY)                                            \
+    X(MATL, unknown_texture, "texture 1 of 1", im->materials[1].texture = 1)                                                   \
+    X(MATL, cutout_of_2, "cutout must be 0 or 1", im->materials[1].cutout = 2)                                                 \
+    X(MATL, cut_out_by_no_texture, "cut out by no texture", im->materials[0].cutout = 1)                                       \
+    X(TEXR, no_mip, "no mip level", im->textures[0].mip_count = 0)                                                             \
+    X(TEXR, mips_beyond_the_last, "beyond the 3", im->textures[0].first_mip = 1)                                               \
+    X(TEXR, mip_sum_that_wraps, "beyond the 3", im->textures[0].first_mip = 0xffffffff)                                        \
+    X(TEXR, unknown_wrap, "wrap", im->textures[0].wrap_v = 3)                                                                  \
+    X(MIPS, no_width, "edges must be", im->mips[2].width = 0)                                                                  \
+    X(MIPS, wide_and_flat, "edges must be", im->mips[0].width = 16385, im->mips[0].height = 0)                                 \
+    X(MIPS, huge_height, "edges must be", im->mips[0].height = 0xffffffff)                                                     \
+    X(MIPS, no_gutter_beside, "no gutter", im->mips[0].pitch = 5)                                                              \
+    X(MIPS, no_gutter_above, "mip 0: runs beyond", im->mips[0].offset -= 1)                                                    \
+    X(MIPS, no_gutter_below, "mip 2: runs beyond", im->mips[2].offset += 1)                                                    \
+    X(MIPS, huge_pitch, "runs beyond", im->mips[1].pitch = 0xffffffff)                                                         \
+    X(MIPS, huge_offset, "runs beyond", im->mips[1].offset = 0xffffffff)                                                       \
+    X(PHOT, position_is_nan, "photon 2: position", im->photons[2].position[0] = NAN)                                           \
+    X(PHOT, direction_is_nan, "photon 1: position, direction", im->photons[1].direction[2] = NAN)                              \
+    X(PHOT, inverse_is_infinite, "photon 0: position, direction or radius", im->photons[0].inv_radius2 = INFINITY)             \
+    X(PHOT, negative_power, "power", im->photons[0].power[1] = -1)                                                             \
+    X(PHOT, wrong_inverse, "inv_radius2", im->photons[1].inv_radius2 = 4.001f)                                                 \
+    X(PHOT, radius_of_0, "inv_radius2", im->photons[1].radius2 = 0)                                                            \
+    X(PHOT, direction_too_short, "unit vector", im->photons[0].direction[1] = -0.5f)                                           \
+    X(PHOT, empty_slot_with_power, "photon 3: an empty slot has power", im->photons[3].power[2] = 1)                           \
+    X(PHOT, unknown_zone, "zone", im->photons[0].zone = 1)                                                                     \
+    X(GOLD, padding_in_use, "frame 1: padding", im->golds[1].pad[0] = 1)
+
+#define TREE_FAULTS(X)                                                                                                         \
+    X(BVHN, cycle, "node 4: child 1 is node 0", im->nodes[4].child1 = 0)                                                       \
+    X(BVHN, node_is_its_own_child, "node 1: child 1 is node 1", im->nodes[1].child1 = 1)                                       \
+    X(BVHN, child_beyond_the_last, "child 1 is node 5 of 5", im->nodes[3].child1 = 5)                                          \
+    X(BVHN, huge_child, "is node 2147483647 of 5", im->nodes[0].child0 = 0x7fffffff)                                           \
+    X(BVHN, node_twice, "leaf begins at triangle 0, expected 6", im->nodes[0].child1 = 1,                                      \
+      copy_box(im->nodes[0].lo1, im->nodes[0].lo0))                                                                            \
+    X(BVHN, node_in_no_tree, "4 nodes of 5", graft(im))                                                                        \
+    X(BVHN, leaf_beyond_the_last, "leaf of triangles 11..12 of 12", im->nodes[4].child1 += 1)                                  \
+    X(BVHN, huge_leaf, "leaf of triangles 268435455", im->nodes[2].child0 = 0xffffffff)                                        \
+    X(BVHN, leaf_twice, "leaf begins at triangle 2, expected 4", im->nodes[2].child1 = im->nodes[2].child0)                    \
+    X(BVHN, leaves_out_of_order, "leaf begins at triangle 4, expected 2", swap_children(&im->nodes[2]))                        \
+    X(BVHN, triangle_in_no_leaf, "leaves hold 11 triangles of 12", im->nodes[4].child1 -= 1u << VIT_LEAF_SHIFT)                \
+    X(BVHN, triangle_in_two_leaves, "does not hold triangle", im->nodes[1].child0 += 1u << VIT_LEAF_SHIFT)                     \
+    X(BVHN, box_too_small, "node 4: box does not hold triangle 10",                                                            \
+      im->nodes[4].lo1[2] = nextafterf(im->nodes[4].lo1[2], 2.0f))                                                             \
+    X(BVHN, box_without_its_pad, "does not hold triangle 0", im->nodes[1].hi0[0] = -1)                                         \
+    X(BVHN, box_leaves_its_parent, "node 2: box of child 0 leaves its parent's", im->nodes[2].hi0[0] = 1.5f)                   \
+    X(BVHN, box_is_nan, "node 0: box of child 1", im->nodes[0].lo1[1] = NAN)                                                   \
+    X(BVHN, box_is_infinite, "node 0: box of child 0", im->nodes[0].hi0[0] = INFINITY)                                         \
+    X(BVHN, box_partly_inside_out, "node 2: box of child 1", im->nodes[2].lo1[0] = 2)                                          \
+    X(BVHN, box_inside_out_in_z, "node 2: box of child 1", im->nodes[2].lo1[2] = 2)                                            \
+    X(BVHN, box_inside_out_but_for_x, "node 2: box of child 1", empty_box(im->nodes[2].lo1, im->nodes[2].hi1),                 \
+      im->nodes[2].lo1[0] = im->nodes[2].hi1[0])                                                                               \
+    X(BVHN, inner_box_inside_out, "node 0: box of child 1", empty_box(im->nodes[0].lo1, im->nodes[0].hi1))                     \
+    X(BVHN, missing_child_hides_triangles, "leaves hold 10 triangles of 12", empty_box(im->nodes[4].lo1, im->nodes[4].hi1))    \
+    X(BVHN, padding_in_use, "node 4: padding", im->nodes[4].pad[1] = 1)
+
+/* What is just inside the limits must pass: X(name, change made to `im`). */
+#define LIMITS(X)                                                                                                              \
+    X(fewest_hierarchy_nodes, im->scene->max_nodes = 1)                                                                        \
+    X(most_hierarchy_nodes, im->scene->max_nodes = 1 << 26)                                                                    \
+    X(most_list_entries, im->scene->max_list = 1 << 28)                                                                        \
+    X(farthest_slice, im->scene->slice_first = 1 << 24)                                                                        \
+    X(fps_of_1000, im->scene->fps = 1000)                                                                                      \
+    X(no_exposure, im->cameras[0].exposure = 0)                                                                                \
+    X(forward_a_little_short, im->cameras[0].forward[2] = -0.9995f)                                                            \
+    X(dark_light, im->lights[0].intensity[0] = 0)                                                                              \
+    X(unlimited_light_without_the_effect, im->lights[0].inv_range2 = im->lights[2].inv_range2 = 0, EFFECTS(0, BIT(RANGE)))     \
+    X(paths_side_by_side, share_paths(im, 0, 8))                                                                               \
+    X(paths_in_reverse, share_paths(im, 8, 0))                                                                                 \
+    X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 8)                                            \
+    X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK)                                       \
+    X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
+    X(emission, im->materials[0].emission[0] = FLT_MAX)                                                                        \
+    X(mirrored_texture, im->textures[0].wrap_u = im->textures[0].wrap_v = VIT_WRAP_MIRROR)                                     \
+    X(dark_photon, im->photons[0].power[0] = 0)                                                                                \
+    X(inverse_a_little_off, im->photons[0].inv_radius2 = 4.0003f)                                                              \
+    X(boxes_larger_than_needed, im->nodes[0].lo0[0] = -100)                                                                    \
+    X(no_golden_records, memset(im->golds, 0, FIXTURE_FRAMES * sizeof *im->golds))
+
+#define FAULTS(X) CONTAINER_FAULTS(X) META_FAULTS(X) RECORD_FAULTS(X) TREE_FAULTS(X)
+
+static void swap_entries(image *im, int a, int b) {
+    vit_pack_entry e = im->table[a];
+    im->table[a] = im->table[b];
+    im->table[b] = e;
+}
+
+static void poke(image *im, uint64_t at) {
+    ((unsigned char *)im->bytes)[at] = 1;
+}
+
+/* The bytes that leave the section become gap, so they must be 0 for the next check to be reached. */
+static void shorten(image *im, int i, uint64_t by) {
+    im->table[i].size -= by;
+    memset((char *)section(im, i) + im->table[i].size, 0, (size_t)by);
+}
+
+/* hi follows lo in vit_bvh_node. */
+static void copy_box(float *to, const float *from) {
+    memcpy(to, from, 6 * sizeof(float));
+}
+
+static void empty_box(float *lo, float *hi) {
+    for (int k = 0; k < 3; k++) {
+        lo[k] = FLT_MAX;
+        hi[k] = -FLT_MAX;
+    }
+}
+
+static void swap_children(vit_bvh_node *n) {
+    vit_u32 child = n->child0;
+    n->child0 = n->child1;
+    n->child1 = child;
+}
+
+/* Half of the 16 paths for each light. */
+static void share_paths(image *im, vit_u32 first0, vit_u32 first1) {
+    for (int i = 0; i < FIXTURE_FRAMES * FIXTURE_LIGHTS; i++) {
+        im->lights[i].path_first = i % 2 ? first1 : first0;
+        im->lights[i].path_count = 8;
+    }
+}
+
+/* Node 3 gets one leaf of the triangles of sides 4 and 5, so that nothing leads to node 4. */
+static void graft(image *im) {
+    vit_bvh_node *n = &im->nodes[3];
+    n->child1 = VIT_LEAF_BIT | 3u << VIT_LEAF_SHIFT | 8;
+}
+
+#define X(place, name, cause, ...)                                                                                             \
+    static void spoil_##place##_##name(image *im) {                                                                            \
+        __VA_ARGS__;                                                                                                           \
+    }
+FAULTS(X)
+#undef X
+#define X(name, ...)                                                                                                           \
+    static void limit_##name(image *im) {                                                                                      \
+        __VA_ARGS__;                                                                                                           \
+    }
+LIMITS(X)
+#undef X
+
+typedef struct fault {
+    const char *place, *cause;
+    void (*spoil)(image *im);
+} fault;
+
+static fault faults[] = {
+#define X(place, name, cause, ...) {#place, cause, spoil_##place##_##name},
+    FAULTS(X)
+#undef X
+};
+
+static fault limits[] = {
+#define X(name, ...) {0, 0, limit_##name},
+    LIMITS(X)
+#undef X
+};
+
+static void a_pack_just_inside_a_limit_is_accepted(void **state) {
+    const fault *f = *state;
+    image im = valid_image();
+    f->spoil(&im);
+    forge(&im);
+    vit_text why;
+    vit_status status = read_image(&im, &why);
+    assert_string_equal(why.text, "");
+    assert_int_equal(status, VIT_OK);
+    free(im.bytes);
+}
+
+static void a_forged_pack_is_refused_for_its_own_reason(void **state) {
+    const fault *f = *state;
+    image im = valid_image();
+    f->spoil(&im);
+    forge(&im);
+    vit_text why;
+    assert_refused(read_image(&im, &why), &why, f->place, f->cause);
+    free(im.bytes);
+}
+
+static void any_word_may_have_any_value_without_bringing_the_loader_down(void **state) {
+    (void)state;
+    static const uint32_t values[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x7f800000 /* inf */, 0x7fc00000 /* NaN */};
+    image im = valid_image();
+    vit_text why;
+    size_t refused = 0;
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        uint32_t *words = section(&im, i);
+        for (size_t w = 0; w < im.table[i].size / 4; w++)
+            for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
+                const uint32_t before = words[w];
+                words[w] = values[v];
+                forge(&im);
+                if (read_image(&im, &why) != VIT_OK) {
+                    assert_one_line(&why);
+                    refused++;
+                }
+                words[w] = before;
+            }
+    }
+    assert_true(refused > 1000);
+    forge(&im);
+    assert_int_equal(read_image(&im, &why), VIT_OK);
+    free(im.bytes);
+}
+
+int main(void) {
+    struct CMUnitTest tests[] = {
+#define X(place, name, cause, ...)                                                                                             \
+    {"a_pack_is_refused_for_" #place "_" #name, a_forged_pack_is_refused_for_its_own_reason, 0, 0, 0},
+        FAULTS(X)
+#undef X
+#define X(name, ...) {"a_pack_is_accepted_with_" #name, a_pack_just_inside_a_limit_is_accepted, 0, 0, 0},
+            LIMITS(X)
+#undef X
+                cmocka_unit_test(any_word_may_have_any_value_without_bringing_the_loader_down),
+    };
+    const size_t fault_count = sizeof faults / sizeof faults[0], limit_count = sizeof limits / sizeof limits[0];
+    for (size_t i = 0; i < fault_count; i++)
+        tests[i].initial_state = &faults[i];
+    for (size_t i = 0; i < limit_count; i++)
+        tests[fault_count + i].initial_state = &limits[i];
+    return cmocka_run_group_tests_name("forged packs", tests, NULL, NULL);
+}

@@ -1,0 +1,223 @@
+/* Saving: under its name a pack is there whole or not at all, and nothing else is left in the folder. Failures are made real:
+ * a file size limit breaks a write in the middle, and the signal that comes with it stands for the user's Ctrl-C. Each test has
+ * a fresh folder, which must be empty but for the named file at its end. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "pack_write.h"
+
+#include <dirent.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { SIZE = 20000, LIMIT = 5000, ABANDONED = 7 };
+
+static char folder[64];
+static char path[128];
+static unsigned char bytes[SIZE];
+
+static int make_folder(void **state) {
+    (void)state;
+    strcpy(folder, "/tmp/vitrine-test-XXXXXX");
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(path, sizeof path, "%s/scene.vit", folder);
+    for (int i = 0; i < SIZE; i++)
+        bytes[i] = (unsigned char)(i * 7 + 3);
+    return 0;
+}
+
+/* Entries of the folder, "." and ".." left out. */
+static int entries(void) {
+    DIR *d = opendir(folder);
+    assert_non_null(d);
+    int count = -2;
+    while (readdir(d))
+        count++;
+    closedir(d);
+    return count;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    unlink(path);
+    return rmdir(folder); /* fails if a temporary file is left */
+}
+
+static void assert_file_holds(const unsigned char *expected, size_t size) {
+    unsigned char *found = malloc(size + 1);
+    assert_non_null(found);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(found, 1, size + 1, file), size);
+    assert_memory_equal(found, expected, size);
+    fclose(file);
+    free(found);
+}
+
+static void assert_failed(vit_status status, const vit_text *why, const char *cause) {
+    assert_int_equal(status, VIT_FAILED);
+    assert_null(strchr(why->text, '\n'));
+    if (!strstr(why->text, cause))
+        fail_msg("expected '...%s...', got '%s'", cause, why->text);
+}
+
+static void a_saved_pack_holds_the_bytes_and_is_alone_in_its_folder(void **state) {
+    (void)state;
+    vit_text why = {""};
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_string_equal(why.text, "");
+    assert_file_holds(bytes, SIZE);
+    assert_int_equal(entries(), 1);
+}
+
+static void a_saved_pack_replaces_the_one_before_and_cannot_be_abandoned(void **state) {
+    (void)state;
+    vit_text why = {""};
+    assert_int_equal(pack_save(path, "before", 6, &why), VIT_OK);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    pack_abandon();
+    assert_file_holds(bytes, SIZE);
+    assert_int_equal(entries(), 1);
+}
+
+static void a_pack_is_as_readable_as_the_umask_says(void **state) {
+    (void)state;
+    vit_text why = {""};
+    struct stat info;
+    mode_t before = umask(027);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    umask(before);
+    assert_int_equal(stat(path, &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0640);
+}
+
+static void a_name_without_a_folder_means_this_folder(void **state) {
+    (void)state;
+    char before[4096];
+    vit_text why = {""};
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(folder), 0);
+    vit_status status = pack_save("scene.vit", bytes, SIZE, &why);
+    assert_int_equal(chdir(before), 0);
+    assert_int_equal(status, VIT_OK);
+    assert_file_holds(bytes, SIZE);
+}
+
+static void a_folder_that_is_not_there_is_named(void **state) {
+    (void)state;
+    char deep[256];
+    vit_text why = {""};
+    snprintf(deep, sizeof deep, "%s/none/scene.vit", folder);
+    assert_failed(pack_save(deep, bytes, SIZE, &why), &why, deep);
+    assert_int_equal(entries(), 0);
+}
+
+static void a_folder_that_is_read_only_stays_empty(void **state) {
+    (void)state;
+    vit_text why = {""};
+    assert_int_equal(chmod(folder, 0555), 0);
+    const bool root = geteuid() == 0; /* whom no mode stops */
+    if (root && seteuid(65534) != 0)
+        skip();
+    vit_status status = pack_save(path, bytes, SIZE, &why);
+    if (root)
+        assert_int_equal(seteuid(0), 0);
+    assert_int_equal(chmod(folder, 0755), 0);
+    assert_failed(status, &why, "Permission denied");
+    assert_int_equal(entries(), 0);
+}
+
+static void what_is_not_a_file_is_not_replaced(void **state) {
+    (void)state;
+    vit_text why = {""};
+    assert_failed(pack_save("/dev/null", bytes, SIZE, &why), &why, "not a regular file");
+    assert_failed(pack_save(folder, bytes, SIZE, &why), &why, "not a regular file");
+    struct stat info;
+    assert_int_equal(stat("/dev/null", &info), 0);
+    assert_true(S_ISCHR(info.st_mode));
+}
+
+static void a_name_that_is_too_long_is_refused(void **state) {
+    (void)state;
+    static char name[10000];
+    vit_text why = {""};
+    snprintf(name, sizeof name, "%s/", folder);
+    memset(name + strlen(name), 'x', sizeof name - 1 - strlen(name));
+    assert_failed(pack_save(name, bytes, SIZE, &why), &why, "too long");
+    assert_int_equal(entries(), 0);
+}
+
+static void abandon_and_leave(int signal_number) {
+    (void)signal_number;
+    pack_abandon();
+    _exit(ABANDONED);
+}
+
+/* Saves in a child process that may write LIMIT bytes a file; returns its exit code. */
+static int save_with_a_limit(void (*handler)(int)) {
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        const struct sigaction action = {.sa_handler = handler};
+        const struct rlimit limit = {LIMIT, LIMIT};
+        vit_text why = {""};
+        if (sigaction(SIGXFSZ, &action, NULL) != 0 || setrlimit(RLIMIT_FSIZE, &limit) != 0)
+            _exit(99);
+        vit_status status = pack_save(path, bytes, SIZE, &why);
+        _exit(strstr(why.text, "write: ") ? (int)status : 98);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void a_write_that_breaks_off_leaves_nothing(void **state) {
+    (void)state;
+    assert_int_equal(save_with_a_limit(SIG_IGN), VIT_FAILED);
+    assert_int_equal(entries(), 0);
+}
+
+static void a_write_that_breaks_off_leaves_the_pack_before_it_whole(void **state) {
+    (void)state;
+    vit_text why = {""};
+    assert_int_equal(pack_save(path, "before", 6, &why), VIT_OK);
+    assert_int_equal(save_with_a_limit(SIG_IGN), VIT_FAILED);
+    assert_file_holds((const unsigned char *)"before", 6);
+    assert_int_equal(entries(), 1);
+}
+
+static void a_signal_in_the_middle_of_a_write_leaves_nothing(void **state) {
+    (void)state;
+    assert_int_equal(save_with_a_limit(abandon_and_leave), ABANDONED);
+    assert_int_equal(entries(), 0);
+}
+
+int main(void) {
+#define IN_A_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+    static const struct CMUnitTest tests[] = {
+        IN_A_FOLDER(a_saved_pack_holds_the_bytes_and_is_alone_in_its_folder),
+        IN_A_FOLDER(a_saved_pack_replaces_the_one_before_and_cannot_be_abandoned),
+        IN_A_FOLDER(a_pack_is_as_readable_as_the_umask_says),
+        IN_A_FOLDER(a_name_without_a_folder_means_this_folder),
+        IN_A_FOLDER(a_folder_that_is_not_there_is_named),
+        IN_A_FOLDER(a_folder_that_is_read_only_stays_empty),
+        IN_A_FOLDER(what_is_not_a_file_is_not_replaced),
+        IN_A_FOLDER(a_name_that_is_too_long_is_refused),
+        IN_A_FOLDER(a_write_that_breaks_off_leaves_nothing),
+        IN_A_FOLDER(a_write_that_breaks_off_leaves_the_pack_before_it_whole),
+        IN_A_FOLDER(a_signal_in_the_middle_of_a_write_leaves_nothing),
+    };
+#undef IN_A_FOLDER
+    return cmocka_run_group_tests_name("saving a pack", tests, NULL, NULL);
+}

@@ -1,0 +1,269 @@
+/* Dark sides. Random rays decide, so the tests use scenes in which the answer is beyond doubt: closed boxes, boxes with a hole,
+ * faces that touch. The front of a box's face is outside. What must never happen is a lit side that is called dark; several
+ * tests are about what could lead to it: small triangles, cut-outs, lights that are somewhere for one frame only. */
+#include "reach.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define MAX_TRIANGLES 40000
+#define MAX_FRAMES 100
+
+typedef struct fixture {
+    model m;
+    model_material materials[2]; /* opaque, cut out */
+    bvh b;
+    geometry g;
+    vit_light lights[MAX_FRAMES];
+    uint32_t frames;
+    uint32_t flags[MAX_TRIANGLES]; /* found, by the triangle's number in the model */
+    reach r;
+} fixture;
+
+static fixture *make(void) {
+    fixture *f = calloc(1, sizeof *f);
+    assert_non_null(f);
+    f->m.position = calloc(9 * MAX_TRIANGLES, sizeof(float));
+    f->m.normal = calloc(9 * MAX_TRIANGLES, sizeof(float));
+    f->m.uv = calloc(6 * MAX_TRIANGLES, sizeof(float));
+    f->m.index = calloc(3 * MAX_TRIANGLES, sizeof(uint32_t));
+    f->m.material = calloc(MAX_TRIANGLES, sizeof(uint32_t));
+    assert_true(f->m.position && f->m.normal && f->m.uv && f->m.index && f->m.material);
+    f->m.materials = f->materials;
+    f->m.material_count = 2;
+    f->materials[0].image = f->materials[1].image = -1;
+    f->materials[1].cutoff = 0.5f;
+    return f;
+}
+
+static void drop(fixture *f) {
+    bvh_free(&f->b);
+    geometry_free(&f->g);
+    free(f->m.position);
+    free(f->m.normal);
+    free(f->m.uv);
+    free(f->m.index);
+    free(f->m.material);
+    free(f);
+}
+
+static void add_triangle(fixture *f, const float a[3], const float b[3], const float c[3]) {
+    assert_true(f->m.triangles < MAX_TRIANGLES);
+    const float *corner[3] = {a, b, c};
+    for (uint32_t i = 0; i < 3; i++) {
+        memcpy(f->m.position + 3 * (size_t)f->m.vertices, corner[i], 3 * sizeof(float));
+        f->m.normal[3 * (size_t)f->m.vertices + 1] = 1.0f;
+        f->m.index[3 * (size_t)f->m.triangles + i] = f->m.vertices++;
+    }
+    f->m.triangles++;
+}
+
+/* Two triangles a cell; the front is where `u` x `v` points. */
+static void add_plate(fixture *f, const float o[3], const float u[3], const float v[3], int cells) {
+    for (int j = 0; j < cells; j++)
+        for (int i = 0; i < cells; i++) {
+            float p[4][3];
+            for (int c = 0; c < 4; c++)
+                for (int k = 0; k < 3; k++)
+                    p[c][k] = o[k] + u[k] * (float)(i + (c & 1)) / (float)cells + v[k] * (float)(j + (c >> 1)) / (float)cells;
+            add_triangle(f, p[0], p[1], p[3]);
+            add_triangle(f, p[0], p[3], p[2]);
+        }
+}
+
+/* A closed box: faces -x +x -y +y -z +z, each of 2 cells^2 triangles. Returns its first triangle. */
+static uint32_t add_box(fixture *f, const float lo[3], const float hi[3], int cells) {
+    const uint32_t first = f->m.triangles;
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            float o[3] = {lo[0], lo[1], lo[2]}, u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+            o[axis] = side ? hi[axis] : lo[axis];
+            u[side ? a : b] = side ? hi[a] - lo[a] : hi[b] - lo[b];
+            v[side ? b : a] = side ? hi[b] - lo[b] : hi[a] - lo[a];
+            add_plate(f, o, u, v, cells);
+        }
+    return first;
+}
+
+static void add_light(fixture *f, float x, float y, float z) {
+    f->lights[f->frames++] = (vit_light){.position = {x, y, z}, .intensity = {1.0f, 1.0f, 1.0f}, .cos_outer = -1.0f};
+}
+
+static void search(fixture *f, unsigned threads) {
+    const tracks t = {.lights = f->lights, .light_count = 1};
+    vit_text why = {""};
+    bvh_free(&f->b);
+    geometry_free(&f->g);
+    if (bvh_build(&f->m, 1, &f->b, &why) != VIT_OK || geometry_pack(&f->m, &f->b, &f->g, &why) != VIT_OK ||
+        reach_dark_sides(&f->m, &t, f->frames, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
+        fail_msg("%s", why.text);
+    for (uint32_t i = 0; i < f->m.triangles; i++)
+        f->flags[f->b.order[i]] = f->g.attributes[i].material & (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
+}
+
+static void expect(const fixture *f, uint32_t first, uint32_t count, uint32_t wanted) {
+    for (uint32_t i = first; i < first + count; i++)
+        assert_int_equal(f->flags[i], wanted);
+}
+
+#define ROOM ((const float[3]){-5, 0, -5}), ((const float[3]){5, 5, 5})
+
+static void the_inside_of_a_closed_box_is_dark_and_its_outside_lit(void **state) {
+    (void)state;
+    fixture *f = make();
+    const uint32_t room = add_box(f, ROOM, 1), box = add_box(f, (const float[]){-1, 1, -1}, (const float[]){1, 2, 1}, 4);
+    add_light(f, 0, 4, 0);
+    search(f, 2);
+    expect(f, room, 12, VIT_SIDE_DARK_FRONT); /* nothing is outside */
+    expect(f, box, 6 * 32, VIT_SIDE_DARK_BACK);
+    assert_true(fabs(f->r.area - 2.0 * (400.0 + 16.0)) < 1e-3);
+    assert_true(fabs(f->r.dark_front - 400.0) < 1e-3);
+    assert_true(fabs(f->r.dark_back - 16.0) < 1e-3);
+    assert_int_equal(f->r.dark_sides, 12 + 6 * 32);
+    drop(f);
+}
+
+static void light_finds_its_way_through_a_hole(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    const uint32_t box = add_box(f, (const float[]){-1, 1, -1}, (const float[]){1, 2, 1}, 4);
+    add_light(f, 4, 4, 4);
+    const float elsewhere[9] = {3, 1, 3, 3.5f, 1, 3, 3, 1, 3.5f}; /* where one triangle of the box's 192 goes */
+    memcpy(f->m.position + 9 * (size_t)(box + 40), elsewhere, sizeof elsewhere);
+    search(f, 2);
+    expect(f, box, 6 * 32, 0);
+    drop(f);
+}
+
+static void faces_that_touch_are_dark_on_both_sides(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    const uint32_t left = add_box(f, (const float[]){-1, 1, -1}, (const float[]){0, 2, 1}, 3);
+    const uint32_t right = add_box(f, (const float[]){0, 1, -1}, (const float[]){1, 2, 1}, 4);
+    add_light(f, 0, 4, 0);
+    search(f, 2);
+    expect(f, left, 18, VIT_SIDE_DARK_BACK);
+    expect(f, left + 18, 18, VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK); /* +x face */
+    expect(f, left + 36, 72, VIT_SIDE_DARK_BACK);
+    expect(f, right, 32, VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK); /* -x face */
+    expect(f, right + 32, 160, VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+static void no_small_triangle_is_darkened_by_bad_luck(void **state) {
+    (void)state;
+    fixture *f = make();
+    const uint32_t room = add_box(f, ROOM, 50); /* 30 000 triangles */
+    const uint32_t dust = f->m.triangles;       /* plates of 2 mm, far fewer light rays than triangles hit one */
+    for (int i = 0; i < 500; i++)
+        add_plate(f, (const float[]){-4.0f + 0.016f * (float)i, 0.5f, -3.0f + 0.01f * (float)(i % 37)},
+                  (const float[]){0, 0, 0.002f}, (const float[]){0.002f, 0, 0}, 1);
+    add_light(f, 0, 4, 0);
+    search(f, 2);
+    expect(f, room, 30000, VIT_SIDE_DARK_FRONT);
+    expect(f, dust, 1000, 0);
+    drop(f);
+}
+
+static void light_passes_the_holes_of_a_cut_out(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    const uint32_t outer = add_box(f, (const float[]){-1, 1, -1}, (const float[]){1, 2, 1}, 2);
+    const uint32_t inner = add_box(f, (const float[]){-0.5f, 1.2f, -0.5f}, (const float[]){0.5f, 1.8f, 0.5f}, 2);
+    for (uint32_t i = outer; i < inner; i++)
+        f->m.material[i] = 1;
+    add_light(f, 0, 4, 0);
+    search(f, 2);
+    expect(f, outer, inner - outer, 0);
+    expect(f, inner, f->m.triangles - inner, VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+static void a_room_that_the_light_visits_for_one_frame_is_lit(void **state) {
+    (void)state;
+    fixture *f = make();
+    const uint32_t room = add_box(f, ROOM, 2), other = add_box(f, (const float[]){20, 0, 0}, (const float[]){26, 3, 4}, 2);
+    const uint32_t never = add_box(f, (const float[]){40, 0, 0}, (const float[]){46, 3, 4}, 2);
+    for (int i = 0; i < MAX_FRAMES; i++)
+        add_light(f, i == 61 ? 23.0f : 0.02f * (float)i, 2, i == 61 ? 2.0f : 0.0f);
+    search(f, 2);
+    expect(f, room, 48, VIT_SIDE_DARK_FRONT);
+    expect(f, other, 48, VIT_SIDE_DARK_FRONT);
+    expect(f, never, 48, VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+static void a_spot_light_lights_only_its_cone(void **state) {
+    (void)state;
+    for (int spot = 0; spot < 2; spot++) {
+        fixture *f = make(); /* two plates above the light; their back is below */
+        add_plate(f, (const float[]){-0.5f, 3, -0.5f}, (const float[]){0, 0, 1}, (const float[]){1, 0, 0}, 2);
+        add_plate(f, (const float[]){2.5f, 3, -0.5f}, (const float[]){0, 0, 1}, (const float[]){1, 0, 0}, 2);
+        add_light(f, 0, 1, 0);
+        if (spot) {
+            f->lights[0].kind = VIT_LIGHT_SPOT;
+            f->lights[0].direction[1] = 1.0f;
+            f->lights[0].cos_outer = 0.95f;
+        }
+        search(f, 2);
+        expect(f, 0, 8, VIT_SIDE_DARK_FRONT);
+        expect(f, 8, 8, spot ? VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK : VIT_SIDE_DARK_FRONT);
+        drop(f);
+    }
+}
+
+static void without_light_nothing_is_flagged(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    add_light(f, 0, 4, 0);
+    memset(f->lights[0].intensity, 0, sizeof f->lights[0].intensity);
+    search(f, 2);
+    expect(f, 0, 12, 0);
+    assert_int_equal(f->r.dark_sides, 0);
+    drop(f);
+}
+
+static void one_thread_and_two_flag_the_same_sides(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 12);
+    for (int i = 0; i < 60; i++) { /* a heap of boxes that overlap, so that many sides are near the threshold */
+        const float x = 0.13f * (float)(i * 17 % 31) - 2.0f, y = 0.11f * (float)(i * 7 % 13),
+                    z = 0.12f * (float)(i * 11 % 29) - 2.0f;
+        add_box(f, (const float[]){x, y, z}, (const float[]){x + 0.7f, y + 0.6f, z + 0.5f}, 3);
+    }
+    add_light(f, 0, 4, 0);
+    search(f, 1);
+    assert_true(f->r.dark_back > 0.0);
+    uint32_t one[MAX_TRIANGLES];
+    memcpy(one, f->flags, sizeof one);
+    for (unsigned run = 0; run < 3; run++) {
+        search(f, run == 2 ? 0 : 2);
+        assert_memory_equal(f->flags, one, sizeof one);
+    }
+    drop(f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_inside_of_a_closed_box_is_dark_and_its_outside_lit),
+        cmocka_unit_test(light_finds_its_way_through_a_hole),
+        cmocka_unit_test(faces_that_touch_are_dark_on_both_sides),
+        cmocka_unit_test(no_small_triangle_is_darkened_by_bad_luck),
+        cmocka_unit_test(light_passes_the_holes_of_a_cut_out),
+        cmocka_unit_test(a_room_that_the_light_visits_for_one_frame_is_lit),
+        cmocka_unit_test(a_spot_light_lights_only_its_cone),
+        cmocka_unit_test(without_light_nothing_is_flagged),
+        cmocka_unit_test(one_thread_and_two_flag_the_same_sides),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
