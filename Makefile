@@ -37,8 +37,10 @@ LIBS_RUNTIME := -lOpenCL
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
-.PHONY: all help deps demo test bench clean install format
-all: deps $(B)/vitrine-play $(B)/vitrine-bake
+.PHONY: all tools help deps demo run-demo test bench clean install format
+all: deps
+	@$(MAKE) --no-print-directory tools
+tools: $(B)/vitrine-play $(B)/vitrine-bake
 
 include tests/deps.mk
 
@@ -69,6 +71,32 @@ $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@
 
 include tests/test.mk
+
+# Bakes our scenes, plays them, verifies every hash, writes pictures.
+demo: deps
+	@$(MAKE) --no-print-directory run-demo
+run-demo: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	@mkdir -p build/demo
+	@set -e; for s in cornell atrium; do \
+	  echo "== $$s"; \
+	  $(B)/vitrine-bake $(B)/scenes/$$s.cfg -o build/demo/$$s.vit; \
+	  $(B)/vitrine-play build/demo/$$s.vit --verify --report --out png:build/demo/$$s; \
+	done
+	@echo "pictures: build/demo/cornell/*.png build/demo/atrium/*.png   packs: build/demo/*.vit"
+
+# The library, its header and the tools under $(prefix).
+install: all
+	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib $(DESTDIR)$(prefix)/include
+	install -m 755 $(B)/vitrine-play $(B)/vitrine-bake $(DESTDIR)$(prefix)/bin
+	install -m 644 $(B)/libvitrine.a $(DESTDIR)$(prefix)/lib
+	install -m 644 include/vitrine.h $(DESTDIR)$(prefix)/include
+
+help:
+	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
+	@echo "make test     all tests"
+	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
+	@echo "make install  prefix=$(prefix)"
+	@echo "make deps | all | clean | format     config=release|debug|sanitize"
 
 clean:
 	rm -rf build

@@ -18,12 +18,13 @@
 #include <time.h>
 #include <unistd.h>
 
-#define CHUNK 256u /* batches that a thread takes at a time */
+#define CHUNK 256u /* items that a thread takes at a time */
 #define LIGHT_RAYS (1u << 20)
 #define LIGHT_STREAM 0xffffffffu
-#define GATHER_RAYS 16u /* one batch */
-#define ASK_BATCHES 2u  /* step 4: batches of gathering rays */
-#define ITERATIONS 40   /* 0.8^40 = 1e-4 */
+#define GATHER_RAYS 16u /* of a side in step 2 */
+#define ASK_LIGHTS 16u  /* in step 4 */
+#define ASK_RAYS 32u
+#define ITERATIONS 40 /* 0.8^40 = 1e-4 */
 #define MAX_THREADS 256u
 #define FLUX_ONE 0x1p56 /* fixed point of direct flux: all sides' sum is at most the lights' power, 1 */
 
@@ -73,11 +74,6 @@ static void run_all(search *s, job *run, uint32_t items, unsigned threads) {
         pthread_join(pool[i], NULL);
 }
 
-static void cast(search *s, ray_batch *b) {
-    ray_scene_cast(&s->rays, b);
-    atomic_fetch_add_explicit(&s->shot, b->count, memory_order_relaxed);
-}
-
 static double mean_intensity(const vit_light *l) {
     return ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) / 3.0;
 }
@@ -96,61 +92,48 @@ static vec light_direction(const vit_light *l, float u, float v) {
                  -sign * n.x * x - n.y * y + n.z * z};
 }
 
-/* Step 1, a batch of one light's rays, in its place of one frame. */
-static void shoot_from_light(search *s, uint32_t item) {
-    const uint32_t batches = LIGHT_RAYS / RAY_BATCH, light = item % s->t->light_count;
-    const uint32_t frame = (uint32_t)((uint64_t)item * s->frames / batches);
+/* Step 1: a ray of one light, from its place in one frame. */
+static void shoot_from_light(search *s, uint32_t ray) {
+    const uint32_t light = ray % s->t->light_count, frame = (uint32_t)((uint64_t)ray * s->frames / LIGHT_RAYS);
     const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
     const double power = mean_intensity(l) * solid_angle(l);
     if (!(power > 0.0))
         return;
-    ray_batch b = {.count = RAY_BATCH};
-    for (uint32_t i = 0; i < RAY_BATCH; i++) {
-        const uint32_t ray = item * RAY_BATCH + i;
-        b.origin[i] = (vec){l->position[0], l->position[1], l->position[2]};
-        b.direction[i] = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
-        b.reach[i] = INFINITY;
-    }
-    cast(s, &b);
+    const vec origin = {l->position[0], l->position[1], l->position[2]};
+    const vec direction = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
+    const uint32_t side = ray_scene_cast(&s->rays, origin, direction, INFINITY);
     const double share = power / s->power * s->t->light_count / LIGHT_RAYS;
-    for (uint32_t i = 0; i < RAY_BATCH; i++)
-        if (b.side[i] != RAY_NOTHING)
-            atomic_fetch_add_explicit(s->flux + b.side[i], (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
+    if (side < s->sides)
+        atomic_fetch_add_explicit(s->flux + side, (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
+    atomic_fetch_add_explicit(&s->shot, 1, memory_order_relaxed);
 }
 
-static void aim_batch(const search *s, uint32_t side, uint32_t batch, ray_batch *b) {
-    const vec n = side_normal(s->g, side);
-    b->count = RAY_BATCH;
-    for (uint32_t i = 0; i < RAY_BATCH; i++) {
-        const uint32_t ray = batch * RAY_BATCH + i;
-        b->origin[i] = side_point(s->g, side, sequence(side, ray, 0), sequence(side, ray, 1));
-        b->direction[i] = cosine_direction(n, sequence(side, ray, 2), sequence(side, ray, 3));
-        b->reach[i] = INFINITY;
-    }
+/* What ray `i` of a side finds. */
+static uint32_t look(const search *s, uint32_t side, uint32_t i) {
+    const vec origin = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
+    const vec direction = cosine_direction(side_normal(s->g, side), sequence(side, i, 2), sequence(side, i, 3));
+    return ray_scene_cast(&s->rays, origin, direction, INFINITY);
 }
 
 /* Step 2. */
 static void gather(search *s, uint32_t side) {
-    ray_batch b;
-    aim_batch(s, side, 0, &b);
-    cast(s, &b);
     for (uint32_t i = 0; i < GATHER_RAYS; i++)
-        s->found[(size_t)side * GATHER_RAYS + i] = b.side[i];
+        s->found[(size_t)side * GATHER_RAYS + i] = look(s, side, i);
     const double area = triangle_area(s->g->triangles + side / 2);
     s->direct[side] = (float)((double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE / area);
     s->irradiance[side] = s->direct[side];
+    atomic_fetch_add_explicit(&s->shot, GATHER_RAYS, memory_order_relaxed);
 }
 
-static float found_irradiance(const search *s, const uint32_t *found, uint32_t count) {
-    float sum = 0.0f;
-    for (uint32_t i = 0; i < count; i++)
-        sum += found[i] == RAY_NOTHING ? 0.0f : s->irradiance[found[i]];
-    return sum;
+static float irradiance_of(const search *s, uint32_t found) {
+    return found < s->sides ? s->irradiance[found] : 0.0f;
 }
 
 /* Step 3. */
 static void reflect_once(search *s, uint32_t side) {
-    const float sum = found_irradiance(s, s->found + (size_t)side * GATHER_RAYS, GATHER_RAYS);
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < GATHER_RAYS; i++)
+        sum += irradiance_of(s, s->found[(size_t)side * GATHER_RAYS + i]);
     s->next_irradiance[side] = s->direct[side] + REACH_ALBEDO / (float)GATHER_RAYS * sum;
 }
 
@@ -163,51 +146,38 @@ static void solve(search *s, unsigned threads) {
     }
 }
 
-/* The side's direct irradiance by a batch of shadow rays, each to some light in some frame. */
-static float ask_lights(search *s, uint32_t side) {
-    const vec n = side_normal(s->g, side);
-    ray_batch b = {.count = RAY_BATCH};
-    float wanted[RAY_BATCH], sum = 0.0f;
-    for (uint32_t i = 0; i < RAY_BATCH; i++) {
-        const uint32_t light = (uint32_t)(sequence(side, i, 2) * (float)s->t->light_count);
-        const uint32_t frame = (uint32_t)(sequence(side, i, 3) * (float)s->frames);
-        const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
-        const vec o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
-        const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};
-        const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
-        const vec unit = {to.x / d, to.y / d, to.z / d};
-        const float cosine = unit.x * n.x + unit.y * n.y + unit.z * n.z;
-        const float axis = -(unit.x * l->direction[0] + unit.y * l->direction[1] + unit.z * l->direction[2]);
-        const bool inside = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
-        wanted[i] = inside && cosine > 0.0f ? (float)(mean_intensity(l) / s->power) * cosine / (d * d) : 0.0f;
-        b.origin[i] = o;
-        b.direction[i] = cosine > 0.0f ? unit : n;
-        b.reach[i] = d;
-    }
-    cast(s, &b);
-    for (uint32_t i = 0; i < RAY_BATCH; i++)
-        sum += b.hit[i] ? 0.0f : wanted[i];
-    return sum * (float)s->t->light_count / (float)RAY_BATCH;
+/* Direct irradiance of a side, estimated by shadow ray `i` to some light in some frame. */
+static float ask_light(const search *s, uint32_t side, uint32_t i) {
+    const uint32_t light = (uint32_t)(sequence(side, i, 2) * (float)s->t->light_count);
+    const uint32_t frame = (uint32_t)(sequence(side, i, 3) * (float)s->frames);
+    const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
+    const vec n = side_normal(s->g, side), o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
+    const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};
+    const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
+    const vec unit = {to.x / d, to.y / d, to.z / d};
+    const float cosine = unit.x * n.x + unit.y * n.y + unit.z * n.z;
+    const float axis = -(unit.x * l->direction[0] + unit.y * l->direction[1] + unit.z * l->direction[2]);
+    const bool in_cone = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
+    if (!in_cone || !(cosine > 0.0f) || ray_scene_cast(&s->rays, o, unit, d) != RAY_NOTHING)
+        return 0.0f;
+    return (float)(mean_intensity(l) / s->power) * cosine / (d * d) * (float)s->t->light_count;
 }
 
-/* Step 4. */
+/* Step 4. The estimates add up as they come; what is enough ends the search. */
 static void ask_again(search *s, uint32_t side) {
-    float e = s->irradiance[side];
-    if (e < s->threshold)
-        e += ask_lights(s, side);
-    float sum = 0.0f;
-    for (uint32_t batch = 1; batch <= ASK_BATCHES && e < s->threshold; batch++) {
-        ray_batch b;
-        aim_batch(s, side, batch, &b);
-        cast(s, &b);
-        sum += found_irradiance(s, b.side, RAY_BATCH);
-        e = fmaxf(e, REACH_ALBEDO * sum / (float)(batch * RAY_BATCH));
-    }
-    s->next_irradiance[side] = e;
+    const float found = s->irradiance[side];
+    float direct = 0.0f, reflected = 0.0f;
+    uint32_t rays = 0;
+    for (uint32_t i = 0; i < ASK_LIGHTS && found + direct < s->threshold; i++, rays++)
+        direct += ask_light(s, side, i) / (float)ASK_LIGHTS;
+    for (uint32_t i = 0; i < ASK_RAYS && fmaxf(found, reflected) + direct < s->threshold; i++, rays++)
+        reflected += REACH_ALBEDO / (float)ASK_RAYS * irradiance_of(s, look(s, side, GATHER_RAYS + i));
+    s->next_irradiance[side] = fmaxf(found, reflected) + direct;
+    atomic_fetch_add_explicit(&s->shot, rays, memory_order_relaxed);
 }
 
 static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, void *user) {
-    run_all(s, shoot_from_light, LIGHT_RAYS / RAY_BATCH, threads);
+    run_all(s, shoot_from_light, LIGHT_RAYS, threads);
     if (progress)
         progress(user, 0.1);
     run_all(s, gather, s->sides, threads);

@@ -1,13 +1,14 @@
-/* reach.c: sides of triangles that light does not reach, directly or after any number of reflections: insides of walls, touching
- * faces. */
+/* reach.c: sides of triangles that light does not reach, directly or after any number of reflections: insides of walls,
+ * touching faces. */
 #ifndef VIT_BAKE_REACH_H
 #define VIT_BAKE_REACH_H
 
 #include "bvh.h"
 #include "tracks.h"
 
-/* A side is dark if its irradiance, averaged over the path, with surfaces that reflect REACH_ALBEDO, stays below REACH_THRESHOLD
- * of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets everywhere. */
+/* A side is dark if its irradiance, averaged over the path, with surfaces that reflect REACH_ALBEDO, stays below
+ * REACH_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
+ * everywhere. */
 #define REACH_ALBEDO 0.8f
 #define REACH_THRESHOLD 1e-3f
 
@@ -22,9 +23,9 @@ typedef struct reach {
 /* `done` runs from 0 to 1. Called by the thread that called reach_dark_sides(). */
 typedef void reach_progress_fn(void *user, double done);
 
-/* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames. Without any light
- * nothing is flagged. The result does not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory,
- * or Embree fails. */
+/* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames. Without any
+ * light nothing is flagged. The result does not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of
+ * memory, or Embree fails. */
 vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, geometry *g, unsigned threads,
                             reach_progress_fn *progress, void *user, reach *out, vit_text *why);
 

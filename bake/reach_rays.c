@@ -3,7 +3,6 @@
 #include "reach_rays.h"
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #if VIT_EMBREE == 4
 #include <embree4/rtcore.h>
@@ -132,39 +131,27 @@ void ray_scene_close(ray_scene *s) {
     *s = (ray_scene){0};
 }
 
-void ray_scene_cast(const ray_scene *s, ray_batch *b) {
-    struct RTCRayHit16 r;
-    _Alignas(64) int valid[RAY_BATCH];
-    for (uint32_t i = 0; i < RAY_BATCH; i++) {
-        const uint32_t k = i < b->count ? i : 0;
-        valid[i] = i < b->count ? -1 : 0;
-        r.ray.org_x[i] = b->origin[k].x;
-        r.ray.org_y[i] = b->origin[k].y;
-        r.ray.org_z[i] = b->origin[k].z;
-        r.ray.dir_x[i] = b->direction[k].x;
-        r.ray.dir_y[i] = b->direction[k].y;
-        r.ray.dir_z[i] = b->direction[k].z;
-        r.ray.tnear[i] = r.ray.time[i] = 0.0f;
-        r.ray.tfar[i] = b->reach[k];
-        r.ray.mask[i] = ~0u;
-        r.ray.id[i] = r.ray.flags[i] = 0;
-        r.hit.geomID[i] = r.hit.primID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
+uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float reach) {
+    struct RTCRayHit r = {.ray = {.org_x = origin.x,
+                                  .org_y = origin.y,
+                                  .org_z = origin.z,
+                                  .dir_x = direction.x,
+                                  .dir_y = direction.y,
+                                  .dir_z = direction.z,
+                                  .tfar = reach,
+                                  .mask = ~0u},
+                          .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
 #if VIT_EMBREE == 4
-    rtcIntersect16(valid, s->scene, &r, NULL);
+    rtcIntersect1(s->scene, &r, NULL);
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect16(valid, s->scene, &context, &r);
+    rtcIntersect1(s->scene, &context, &r);
 #endif
-    for (uint32_t i = 0; i < b->count; i++) {
-        b->side[i] = RAY_NOTHING;
-        b->hit[i] = r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-        if (!b->hit[i])
-            continue;
-        const float cosine = dot(triangle_normal(s->g->triangles + r.hit.primID[i]), b->direction[i]);
-        const float u = r.hit.u[i], v = r.hit.v[i];
-        if (fabsf(cosine) >= GRAZING && fminf(u, fminf(v, 1.0f - u - v)) >= EDGE)
-            b->side[i] = 2 * r.hit.primID[i] + (cosine > 0.0f);
-    }
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return RAY_NOTHING;
+    const float cosine = dot(triangle_normal(s->g->triangles + r.hit.primID), direction);
+    if (fabsf(cosine) < GRAZING || fminf(r.hit.u, fminf(r.hit.v, 1.0f - r.hit.u - r.hit.v)) < EDGE)
+        return RAY_UNSURE;
+    return 2 * r.hit.primID + (cosine > 0.0f);
 }

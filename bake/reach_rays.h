@@ -1,24 +1,15 @@
-/* reach_rays.c: what reach.c shoots: batches of rays from sides of triangles, and what they find. */
+/* reach_rays.c: what reach.c shoots: rays from sides of triangles and from lights, and which sides they find. */
 #ifndef VIT_BAKE_REACH_RAYS_H
 #define VIT_BAKE_REACH_RAYS_H
 
 #include "bvh.h"
 
-#define RAY_BATCH 16
-#define RAY_NOTHING 0xffffffffu /* the ray left the scene, or grazed what it hit */
+#define RAY_NOTHING 0xffffffffu /* no side: the ray met nothing in reach */
+#define RAY_UNSURE 0xfffffffeu  /* it met something, but grazed it */
 
 typedef struct vec {
     float x, y, z;
 } vec;
-
-/* A side is 2 * triangle, + 1 for the back. */
-typedef struct ray_batch {
-    uint32_t count;            /* 1..RAY_BATCH */
-    vec origin[RAY_BATCH], direction[RAY_BATCH];
-    float reach[RAY_BATCH];    /* metres along the direction, INFINITY for all the way */
-    uint32_t side[RAY_BATCH];  /* found; RAY_NOTHING if none */
-    bool hit[RAY_BATCH];       /* anything at all in reach */
-} ray_batch;
 
 typedef struct ray_scene {
     struct RTCDeviceTy *device;
@@ -29,7 +20,9 @@ typedef struct ray_scene {
 /* Rays pass cut-out triangles as if they were not there. False: Embree fails; there is nothing to close. */
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out);
 void ray_scene_close(ray_scene *s);
-void ray_scene_cast(const ray_scene *s, ray_batch *b);
+/* The side that the ray finds within `reach` metres (unit direction): 2 * triangle, + 1 for the back; RAY_NOTHING, RAY_UNSURE.
+ */
+uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float reach);
 
 /* Dimension d (0..3) of point i of a well spread sequence of its own for each `stream`; 0 <= u < 1. */
 float sequence(uint32_t stream, uint32_t i, uint32_t d);

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_MESHES = 4096, MAX_MATERIALS = 65536 };
+enum { MAX_MESHES = 4096, MAX_MATERIALS = 4096 };
 
 typedef struct mesh_placement {
     char file[SCENE_PATH];

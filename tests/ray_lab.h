@@ -171,11 +171,11 @@ static inline void hits_free(ray_hits *h) {
 /* Casts the rays with one of the kernels above through `nodes` over the mesh's triangles. */
 static inline ray_hits rays_cast_through(lab *l, const char *kernel, unsigned lanes, const ray_mesh *r, const vit_bvh_node *nodes,
                                          uint32_t node_count, const ray_set *s) {
-    const vit_scene scene = mesh_scene(r);
+    const vit_scene constants = mesh_scene(r);
     const vit_u32 nothing[16] = {0};
     const size_t t = r->m.triangles, bytes = (size_t)s->n * 4;
     cl_mem none = lab_buffer(l, nothing, sizeof nothing);
-    cl_mem a[] = {lab_buffer(l, &scene, sizeof scene),
+    cl_mem a[] = {lab_buffer(l, &constants, sizeof constants),
                   lab_buffer(l, r->packed.triangles, t * sizeof(vit_triangle)),
                   lab_buffer(l, r->packed.attributes, t * sizeof(vit_attributes)),
                   none,

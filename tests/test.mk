@@ -1,10 +1,24 @@
-# One program a test file.
+# One program a test file; each ends with cmocka's summary line. `make test` runs them all.
 TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
+BENCH_PROGRAMS := $(patsubst %.c,$(B)/%,$(BENCH))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
+SCENES_MADE := $(B)/scenes/atrium.obj
+
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ -lcmocka $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
+	@mkdir -p $(B)/scenes
+	$(B)/make-scenes bake/scenes $(B)/scenes
+
+.PHONY: run-tests run-bench
 test: deps
 	@$(MAKE) --no-print-directory run-tests
-run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(TEST_PROGRAMS)
+run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(TEST_PROGRAMS)
 	@for t in $(TEST_PROGRAMS); do echo "== $$t"; $$t || exit 1; done
-.PHONY: run-tests
+
+bench: deps
+	@$(MAKE) --no-print-directory run-bench
+run-bench: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(BENCH_PROGRAMS)
+	@for t in $(BENCH_PROGRAMS); do $$t || exit 1; done

@@ -48,9 +48,9 @@ static void rib_add(mesh *m, v3 middle, int quarters, double half, double z0, do
     const rib under = {half, RISE - 0.1, z0, z1, 0, 0};
     const rib back = {half, RISE - 0.1, z0, z0, thick, 0}, front = {half, RISE - 0.1, z1, z1, 0, thick};
     m->frame = mesh_frame_at(middle, quarters);
-    shape_sheet(m, 20, 1, rib_point, &under, false);
-    shape_sheet(m, 20, 1, rib_point, &back, false);
-    shape_sheet(m, 20, 1, rib_point, &front, false);
+    shape_sheet(m, 16, 1, rib_point, &under, false);
+    shape_sheet(m, 16, 1, rib_point, &back, false);
+    shape_sheet(m, 16, 1, rib_point, &front, false);
 }
 
 static void vaults(mesh *m) {

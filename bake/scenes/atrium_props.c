@@ -51,7 +51,7 @@ static const lathe_point jar[] = {{0.22, 0.00, true}, {0.34, 0.14, false}, {0.42
                                   {0.25, 0.80, true}, {0.20, 0.70, true}};
 
 static void vases(mesh *m) {
-    const turned tall = {"vases", "glaze", amphora, 13, 28, 2, 1.35, 1.0}, low = {"jars", "clay", jar, 10, 24, 2, 1.0, 1.0};
+    const turned tall = {"vases", "glaze", amphora, 13, 24, 2, 1.35, 1.0}, low = {"jars", "clay", jar, 10, 24, 2, 1.0, 1.0};
     for (int side = -1; side <= 1; side += 2) {
         for (int k = -1; k <= 1; k++) {
             turned_add(m, &tall, v3_of(k * 2.0 * BAY + BAY / 2.0, COURT_FLOOR, side * 3.35), 1.25);
@@ -98,7 +98,7 @@ static void tree(mesh *m, v3 at, uint32_t seed) {
     turned_add(m, &(turned){"trunks", "wood", trunk, 3, 10, 2, 1.0, 1.0}, at, 1.0);
     mesh_group_begin(m, "crowns", "leaves");
     crown c = {v3_of(at.x, at.y + 1.75, at.z), 0.52, seed};
-    shape_sheet(m, 32, 20, crown_point, &c, false);
+    shape_sheet(m, 30, 18, crown_point, &c, false);
 }
 
 /* A cap on a chain; the scene file puts a light under it. */

@@ -1,0 +1,20 @@
+/* photon_rays.c: nearest hits by Embree, with the distances that kernels/ray.clh computes. */
+#ifndef VIT_BAKE_PHOTON_RAYS_H
+#define VIT_BAKE_PHOTON_RAYS_H
+
+#include "photon_surface.h"
+
+typedef struct photon_rays {
+    const photon_scene *s;
+    struct RTCDeviceTy *device;
+    struct RTCSceneTy *scene;
+} photon_rays;
+
+/* False: Embree fails; there is nothing to close. Triangles and attributes of `s` are used in place. */
+bool photon_rays_open(const photon_scene *s, unsigned threads, photon_rays *out);
+void photon_rays_close(photon_rays *r);
+/* Nearest opaque hit: its triangle and the distance in metres along the unit direction; VIT_NONE if there is none. Any number
+ * of threads at once. The answer is a function of ray and triangles alone: of equally near triangles it is the first. */
+uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance);
+
+#endif

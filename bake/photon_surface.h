@@ -1,0 +1,29 @@
+/* photon_surface.c: what a photon finds where it hits: position, normal, reflectance from the atlas. */
+#ifndef VIT_BAKE_PHOTON_SURFACE_H
+#define VIT_BAKE_PHOTON_SURFACE_H
+
+#include "atlas.h"
+#include "photon_math.h"
+
+/* The scene as the pack holds it. */
+typedef struct photon_scene {
+    const vit_triangle *triangles;
+    const vit_attributes *attributes;
+    uint32_t triangle_count;
+    const vit_material *materials;
+    const atlas *atlas;
+    float ray_offset, box_pad; /* of vit_scene, metres */
+} photon_scene;
+
+typedef struct photon_surface {
+    vec3 position; /* moved off the surface by ray_offset, to the side the ray came from */
+    vec3 face;     /* unit geometric normal on that side */
+    vec3 albedo;
+} photon_surface;
+
+/* The surface `distance` metres along the unit direction, on `triangle`; as surface_at() of kernels/surface.clh. */
+photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle);
+/* False: the ray meets the triangle where its material is cut out; as ray_opaque() of kernels/ray.clh. */
+bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle);
+
+#endif

@@ -1,0 +1,38 @@
+/* photons.c: photons of still lights, traced once while baking. METHODS.md P, step 3. */
+#ifndef VIT_BAKE_PHOTONS_H
+#define VIT_BAKE_PHOTONS_H
+
+#include "atlas.h"
+
+#define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
+
+typedef struct photons_light {
+    vit_light light; /* its record, the same in all frames; path_first and path_count do not count */
+    uint32_t paths;  /* 1..PHOTONS_MAX_PATHS; 0: none */
+} photons_light;
+
+/* `done` runs from 0 to 1. Called by the thread that called photons_bake(). */
+typedef void photons_progress_fn(void *user, double done);
+
+typedef struct photons_input {
+    const vit_triangle *triangles;
+    const vit_attributes *attributes;
+    uint32_t triangle_count;
+    const vit_material *materials; /* as in the pack */
+    const atlas *atlas;
+    float ray_offset, box_pad, radius; /* of vit_scene, metres */
+    uint32_t bounces;                  /* of vit_scene */
+    uint32_t first_path;               /* number of the first path: those before it are traced while playing */
+    const photons_light *lights;       /* still lights */
+    uint32_t light_count;
+    photons_progress_fn *progress; /* may be NULL */
+    void *user;
+} photons_input;
+
+/* Photons of all lights, one light after the other. A light has paths * (bounces - 1) slots, slot k * paths + p for path p's
+ * (k + 1)st stored photon; the empty ones are left out, the others keep their order. Paths are numbered on from first_path,
+ * so that no two lights share random numbers. The bytes do not depend on `threads` (0: all cores). *out is the caller's to
+ * free, NULL if *count is 0. VIT_FAILED: out of memory, or Embree fails. VIT_BAD_INPUT: too many paths. */
+vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **out, uint32_t *count, vit_text *why);
+
+#endif
