@@ -88,6 +88,8 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     sections.data[VIT_SECTION_LITE] = dark;
     sections.data[VIT_SECTION_PHOT] = &none;
     vit_status status = vit_pack_derive(&s, why);
+    if (in->progress)
+        in->progress(in->user, "depth slices", 0);
     if (status == VIT_OK)
         status = run_begin(&r, &sections, in->device, VIT_FORMAT_XRGB8888, why);
     free(dark);
@@ -125,6 +127,8 @@ static uint32_t doubled(uint32_t want, uint32_t most) {
 static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nodes, uint32_t *list, vit_text *why) {
     vit_scene *s = in->scene;
     run r;
+    if (in->progress)
+        in->progress(in->user, "frames", (double)*next / s->frames);
     vit_status status = run_begin(&r, in->sections, in->device, VIT_FORMAT_XRGB8888, why);
     while (status == VIT_OK && *next < s->frames) {
         vit_statistics t;

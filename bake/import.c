@@ -91,9 +91,9 @@ static bool add_node(importer *im, const struct aiNode *node, const double paren
     return true;
 }
 
-static bool has_suffix(const char *text, const char *suffix) {
-    const size_t n = strlen(text), k = strlen(suffix);
-    return n >= k && !strcasecmp(text + n - k, suffix);
+bool import_has_suffix(const char *file, const char *suffix) {
+    const size_t n = strlen(file), k = strlen(suffix);
+    return n >= k && !strcasecmp(file + n - k, suffix);
 }
 
 static bool add_scene(importer *im, const scene_mesh *mesh) {
@@ -123,6 +123,8 @@ static bool add_file(importer *im, const scene_mesh *mesh) {
         return import_fail(im, "cannot be read");
     if (!S_ISREG(st.st_mode))
         return import_fail(im, "is not a file");
+    if (!import_check_ply(im))
+        return false;
     /* Polygons become triangles; everything else is done here, so that it is the same for all releases of Assimp. */
     im->ai = aiImportFile(mesh->file, aiProcess_Triangulate);
     if (!im->ai) {
@@ -155,7 +157,7 @@ static void next_file(importer *im, const char *file) {
     im->warned_colors = false;
     im->ai = NULL;
     im->file = file;
-    im->gltf = has_suffix(file, ".gltf") || has_suffix(file, ".glb");
+    im->gltf = import_has_suffix(file, ".gltf") || import_has_suffix(file, ".glb");
 }
 
 vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {

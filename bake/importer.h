@@ -49,6 +49,12 @@ void import_warn(importer *im, const char *format, ...) __attribute__((format(pr
 /* Makes room for `count` things of `size` bytes in *block. */
 bool import_room(importer *im, void *block, size_t *room, size_t count, size_t size);
 
+bool import_has_suffix(const char *file, const char *suffix); /* ".PLY" is ".ply" */
+
+/* import_ply.c: refuses a PLY file whose header has no end or lines of no known kind: Assimp's reader never comes back from
+ * them. Every other file passes. */
+bool import_check_ply(importer *im);
+
 /* import_material.c: the use of material `ai_index` with vertex colour `tint`; false: out of memory.
  * The pointer is good until the next call. */
 bool import_material(importer *im, unsigned ai_index, const float tint[3], material_use **use);

@@ -105,6 +105,8 @@ static vit_status trace_photons(bake *b, vit_text *why) {
                             .materials = b->plan.materials,
                             .atlas = &b->atlas,
                             .ray_offset = b->geometry.ray_offset,
+                            .box_pad = b->plan.scene.box_pad,
+                            .first_path = b->plan.scene.paths,
                             .radius = b->plan.scene.radius,
                             .bounces = b->plan.scene.bounces,
                             .lights = lights,

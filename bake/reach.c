@@ -23,7 +23,7 @@
 #define LIGHT_STREAM 0xffffffffu
 #define GATHER_RAYS 16u /* of a side in step 2 */
 #define ASK_LIGHTS 16u  /* in step 4 */
-#define ASK_RAYS 32u
+#define ASK_RAYS 96u
 #define ITERATIONS 40 /* 0.8^40 = 1e-4 */
 #define MAX_THREADS 256u
 #define FLUX_ONE 0x1p56 /* fixed point of direct flux: all sides' sum is at most the lights' power, 1 */
@@ -146,10 +146,15 @@ static void solve(search *s, unsigned threads) {
     }
 }
 
+static uint32_t pick(float u, uint32_t count) {
+    const uint32_t i = (uint32_t)(u * (float)count);
+    return i < count ? i : count - 1;
+}
+
 /* Direct irradiance of a side, estimated by shadow ray `i` to some light in some frame. */
 static float ask_light(const search *s, uint32_t side, uint32_t i) {
-    const uint32_t light = (uint32_t)(sequence(side, i, 2) * (float)s->t->light_count);
-    const uint32_t frame = (uint32_t)(sequence(side, i, 3) * (float)s->frames);
+    const uint32_t light = pick(sequence(side, i, 2), s->t->light_count);
+    const uint32_t frame = pick(sequence(side, i, 3), s->frames);
     const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
     const vec n = side_normal(s->g, side), o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
     const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};

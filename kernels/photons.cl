@@ -35,11 +35,15 @@ static inline lv3 photon_bounce(lv3 n, lf a, lf b)
     return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
 }
 
-/* Writes VIT_LANES photons from `slot` on. power: W, incident. */
+/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
 static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, float radius)
 {
     float v[12 * VIT_LANES];
     float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * VIT_INV_PI * inv;
+    lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);
+    p = lv3_sel(valid, p, zero);
+    d = lv3_sel(valid, d, zero);
+    power = lv3_sel(valid, power, zero);
     L_STORE(p.x, v);
     L_STORE(p.y, v + VIT_LANES);
     L_STORE(p.z, v + 2 * VIT_LANES);

@@ -16,9 +16,10 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
         lf t = l_sel(hit, L_LOAD(hit_distance + first), (lf)1);
         float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
         surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, (lf)sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
-        lv3_store_planes(s.position, position, n, first);
-        L_STORE(l_encode_normal(s.normal), normal + first);
-        L_STORE(l_encode_albedo(s.albedo) | l_sel_u(s.dark, (lu)VIT_SAMPLE_DARK, (lu)0), albedo + first);
+        /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
+        lv3_store_planes(lv3_sel(hit, s.position, lv3_set((lf)0, (lf)0, (lf)0)), position, n, first);
+        L_STORE(l_sel_u(hit, l_encode_normal(s.normal), (lu)0), normal + first);
+        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, (lu)VIT_SAMPLE_DARK, (lu)0), (lu)0), albedo + first);
         light = lv3_sel(hit, s.emission, light);
     } else {
         lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);

@@ -61,23 +61,27 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
     return near & L_LT(least, (lf)0);
 }
 
-/* A level's work: group g owns slice g % split of the children of the level's (g / split)-th node. What stands between
- * SPLAT_BEGIN and SPLAT_END runs for every batch of the node's photons and every child of the work-item, with batch, used (photons
- * in it), begin (of the batch in the list), child and box in scope. */
-#define SPLAT_BEGIN                                                                                                              \
+/* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is
+ * long: there, `chunks` work-groups each own a stretch of it, and splat_place puts the stretches' entries in order; chunks is 1 for
+ * the other levels. What stands between SPLAT_BEGIN and SPLAT_END runs for every batch of photons and every child of the work-item,
+ * with batch, used (photons in it), begin (of the batch in the list), c (of the node's children), child and box in scope. */
+#define SPLAT_OWNER                                                                                                              \
     local splat_batch batch;                                                                                                     \
-    uint group_index = (uint)get_group_id(0), slice = group_index % split;                                                       \
-    uint node = level_begin(scene, prefix, level) + group_index / split;                                                         \
+    uint chunk = (uint)get_group_id(0) % chunks, node = level_begin(scene, prefix, level) + (uint)get_group_id(0) / chunks;      \
     int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                               \
     uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                  \
     uint list_begin = exists && level > 0 ? list_first[node] : 0;                                                                \
-    uint list_size = !exists || slice >= children ? 0 : level > 0 ? list_count[node] : scene->photons;                           \
-    for (uint begin = 0; begin < list_size; begin += SPLAT_BATCH) {                                                              \
+    uint list_size = !exists ? 0 : level > 0 ? list_count[node] : scene->photons;                                                \
+    uint stretch = (list_size + chunks - 1) / chunks, chunk_begin = min(chunk * stretch, list_size),                             \
+         chunk_end = min(chunk_begin + stretch, list_size);
+
+#define SPLAT_BEGIN                                                                                                              \
+    for (uint begin = chunk_begin; begin < chunk_end; begin += SPLAT_BATCH) {                                                    \
         barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
-        splat_load(&batch, photons, list + list_begin, level == 0, begin, list_size);                                            \
+        splat_load(&batch, photons, list + list_begin, level == 0, begin, chunk_end);                                            \
         barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
-        uint used = min(list_size - begin, (uint)SPLAT_BATCH);                                                                   \
-        for (uint c = slice + (uint)get_local_id(0) * split; c < children; c += (uint)get_local_size(0) * split) {               \
+        uint used = min(chunk_end - begin, (uint)SPLAT_BATCH);                                                                   \
+        for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {                                       \
             uint child = child_first + c;                                                                                        \
             splat_box box = splat_node(bounds, max_nodes, child);
 
@@ -85,30 +89,29 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
         }                                                                                                                        \
     }
 
-/* Sets the children's list_count to 0; run before splat_count. One work-item a node. */
-kernel void splat_clear(global const vit_scene *scene, uint max_nodes, global uint *list_count)
-{
-    uint i = (uint)get_global_id(0);
-    if (i < max_nodes)
-        list_count[i] = 0;
-}
+#define SPLAT_CHILDREN 32 /* of a node, at most: places a chunk has in chunk_count */
 
-kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
-                        global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
-                        global uint *list_count, global const uint *list, global const uint *counters)
+kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
+                        global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
+                        global const uint *list_first, global uint *list_count, global const uint *list, global uint *chunk_count,
+                        global const uint *counters)
 {
+    SPLAT_OWNER
+    global uint *counts = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : list_count + child_first;
+    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
+        counts[c] = 0;
     SPLAT_BEGIN
         uint sum = 0;
         for (uint i = 0; i < used; i += VIT_LANES)
             sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
-        list_count[child] += sum;
+        counts[c] += sum;
     SPLAT_END
 }
 
 /* Places the lists of the level's children one after another; what lies beyond max_list is dropped, the last entries first. One
  * work-group. Sums saturate: saturating addition is associative, so the stretches of the scan do not show. */
-kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_list, uint level, global const uint *prefix, global uint *list_first,
-                        global uint *list_count, volatile global uint *counters)
+kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_list, uint level, uint chunks, global const uint *prefix,
+                        global uint *list_first, global uint *list_count, global uint *chunk_count, volatile global uint *counters)
 {
     local uint partial[256];
     uint begin = level_begin(scene, prefix, level + 1), end = level_end(scene, prefix, (global const uint *)counters, level + 1, max_nodes);
@@ -116,6 +119,15 @@ kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_
     uint id = (uint)get_local_id(0), size = (uint)get_local_size(0), length = (end - begin + size - 1) / size;
     uint a = min(begin + id * length, end), b = min(a + length, end), sum = 0, start = counters[VIT_COUNTER_list], largest = 0;
     for (uint i = a; i < b; i++) {
+        if (level == 0) { /* a child's chunks: their sum, and where each begins */
+            uint all = 0;
+            for (uint k = 0; k < chunks; k++) {
+                uint count = chunk_count[k * SPLAT_CHILDREN + i - begin];
+                chunk_count[k * SPLAT_CHILDREN + i - begin] = all;
+                all += count;
+            }
+            list_count[i] = all;
+        }
         sum = add_sat(sum, list_count[i]);
         largest = max(largest, list_count[i]);
     }
@@ -144,20 +156,23 @@ kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_
     }
 }
 
-kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
-                        global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
-                        global const uint *list_count, global uint *list, global uint *cursor, global const uint *counters)
+kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
+                        global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
+                        global const uint *list_first, global const uint *list_count, global uint *list, global uint *cursor,
+                        global uint *chunk_count, global const uint *counters)
 {
+    SPLAT_OWNER
+    global uint *cursors = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : cursor + child_first; /* written so far */
+    for (uint c = (uint)get_local_id(0); c < children && level > 0; c += (uint)get_local_size(0))
+        cursors[c] = 0;
     SPLAT_BEGIN
-        uint at = begin == 0 ? list_first[child] : cursor[child], end = list_first[child] + list_count[child];
+        uint at = list_first[child] + cursors[c], end = list_first[child] + list_count[child];
         for (uint i = 0; i < used; i += VIT_LANES) {
-            for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1) {
+            for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1, at++)
                 if (at < end)
                     list[at] = batch.id[i + 31u - (uint)clz(hits & (~hits + 1u))];
-                at++;
-            }
         }
-        cursor[child] = at;
+        cursors[c] = at - list_first[child];
     SPLAT_END
 }
 
@@ -181,20 +196,20 @@ static inline uint bucket_of(float x, float y, float z)
 }
 #endif
 
-/* Directions are those that light comes from. Clears the clusters' buckets. One work-item a float4. */
-kernel void bucket_clear(global const vit_scene *scene, uint max_nodes, global float *buckets)
-{
-    uint i = (uint)get_global_id(0);
-    if (i < max_nodes * BUCKETS)
-        vstore4((float4)(0), i, buckets);
-}
-
-/* The clusters' level: each photon's power goes, weighted by the kernel at the box's centre, into the bucket it comes from. */
-kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint split, global const vit_photon *photons, global const uint *prefix,
-                          global const uint *node_first, global const uint *node_count, global const int *bounds, global const uint *list_first,
-                          global uint *list_count, global const uint *list, volatile global uint *counters, global float *buckets)
+/* The clusters' level (chunks is 1): each photon's power goes, weighted by the kernel at the box's centre, into the bucket of the
+ * direction that it comes from. */
+kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
+                          global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
+                          global const uint *list_first, global uint *list_count, global const uint *list, volatile global uint *counters,
+                          global float *buckets)
 {
     uint pairs = 0;
+    SPLAT_OWNER
+    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {
+        list_count[child_first + c] = 0;
+        for (uint i = 0; i < BUCKETS; i++)
+            vstore4((float4)(0), (child_first + c) * BUCKETS + i, buckets);
+    }
     SPLAT_BEGIN
         float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
         uint sum = 0;

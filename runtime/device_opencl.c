@@ -98,7 +98,7 @@ void vit_device_suit(cl_device_id id, const vit_scene *s, vit_limits *l) {
         l->splat_group = cpu ? 1 : 32;
     }
     l->run = cpu ? s->tile * s->tile : 16;
-    l->split = 8;
+    l->chunks = cpu ? 16 : VIT_CHUNKS;
 }
 
 /* Options of the one program: exactly this effect set, view, format and width. */

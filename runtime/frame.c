@@ -5,9 +5,9 @@
 static vit_status set_varying(vit *v, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
     for (uint32_t i = 0; vit_passes[pass].args[i] != V_END; i++) {
         uint32_t a = vit_passes[pass].args[i];
-        if (a != V_frame && a != V_level && a != V_split)
+        if (a != V_frame && a != V_level && a != V_chunks)
             continue;
-        uint32_t value = a == V_frame ? frame : a == V_level ? level : level == 0 ? v->limits.split : 1;
+        uint32_t value = a == V_frame ? frame : a == V_level ? level : vit_pass_chunks(&vit_passes[pass], &v->limits, level);
         cl_int e = clSetKernelArg(v->device.kernels[pass], i, sizeof value, &value);
         if (e != CL_SUCCESS)
             return vit_cl_failed(why, vit_passes[pass].name, e);

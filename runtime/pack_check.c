@@ -40,6 +40,8 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "a range without the effect RANGE";
     if ((uint64_t)l->path_first + l->path_count > s->paths)
         return "paths run beyond the scene's";
+    if (l->path_first % 16 != 0 || l->path_count % 16 != 0) /* a packet of paths has one light, at any number of lanes */
+        return "paths are not multiples of 16";
     return all_zero(l->pad, 3) ? 0 : "padding is not 0";
 }
 

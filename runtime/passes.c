@@ -46,34 +46,32 @@ const vit_pass vit_passes[] = {
      UPWARD,
      W(bounds),
      {B_scene, V_max_nodes, V_level, B_prefix, B_node_first, B_node_count, B_bounds, B_counters, V_END}},
-    {"splat_clear", ON(PHOTONS), PER_NODE, ONCE, W(list_count), {B_scene, V_max_nodes, B_list_count, V_END}},
-    {"bucket_clear", ON(BUCKETS), PER_BUCKET, ONCE, W(buckets), {B_scene, V_max_nodes, B_buckets, V_END}},
     {"splat_count",
      ON(PHOTONS),
      GROUP_PER_LEVEL_NODE,
      LISTED,
-     W(list_count),
-     {B_scene, V_max_nodes, V_level, V_split, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_counters,
-      V_END}},
+     W(list_count) | W(chunk_count),
+     {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list,
+      B_chunk_count, B_counters, V_END}},
     {"splat_place",
      ON(PHOTONS),
      ONE_GROUP,
      LISTED,
      W(list_first) | W(list_count) | W(counters),
-     {B_scene, V_max_nodes, V_max_list, V_level, B_prefix, B_list_first, B_list_count, B_counters, V_END}},
+     {B_scene, V_max_nodes, V_max_list, V_level, V_chunks, B_prefix, B_list_first, B_list_count, B_chunk_count, B_counters, V_END}},
     {"splat_write",
      ON(PHOTONS),
      GROUP_PER_LEVEL_NODE,
      LISTED,
      W(list),
-     {B_scene, V_max_nodes, V_level, V_split, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_cursor,
-      B_counters, V_END}},
+     {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_cursor,
+      B_chunk_count, B_counters, V_END}},
     {"splat_buckets",
      ON(BUCKETS),
      GROUP_PER_LEVEL_NODE,
      LAST,
      W(buckets) | W(list_count) | W(counters),
-     {B_scene, V_max_nodes, V_level, V_split, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_counters,
+     {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_counters,
       B_buckets, V_END}},
     {"estimate_list",
      ON(LIST),
@@ -183,12 +181,6 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
     case PER_MASK_WORD:
         n = s->mask_words > VIT_COUNTER_COUNT ? s->mask_words : VIT_COUNTER_COUNT;
         break;
-    case PER_NODE:
-        n = l->max_nodes;
-        break;
-    case PER_BUCKET:
-        n = (size_t)l->max_nodes * VIT_BUCKETS_OF(l);
-        break;
     case PER_LEVEL_NODE:
         n = nodes;
         break;
@@ -197,7 +189,7 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
         break;
     case GROUP_PER_LEVEL_NODE:
         *local = l->splat_group;
-        n = nodes * (level == 0 ? l->split : 1) * l->splat_group;
+        n = nodes * vit_pass_chunks(p, l, level) * l->splat_group;
         break;
     case ONE_GROUP:
         *local = l->scan_group;
@@ -205,6 +197,10 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
         break;
     }
     *global = round_up(n, *local);
+}
+
+uint32_t vit_pass_chunks(const vit_pass *p, const vit_limits *l, uint32_t level) {
+    return level == 0 && p->repeat == LISTED ? l->chunks : 1;
 }
 
 int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level) {

@@ -20,9 +20,10 @@ typedef struct vit_limits {
     uint32_t scan_group;       /* work-items of single-group passes */
     uint32_t splat_group;      /* work-items a node in splat passes */
     uint32_t run;              /* samples in a row a work-item of cluster passes; a multiple of 16 */
-    uint32_t split;            /* work-groups a node at the hierarchy's upper levels */
+    uint32_t chunks;           /* work-groups that share the root's list of photons */
 } vit_limits;
 
+#define VIT_CHUNKS 64u /* chunks of the root's list, at most */
 #define VIT_BUCKETS_OF(l) ((l)->effects & ON(RAW_BUCKETS) ? 54u : 8u)
 
 /* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits l). */
@@ -53,6 +54,7 @@ typedef struct vit_limits {
     X(list_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
     X(list_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
     X(cursor, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                     \
+    X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                        \
     X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                        \
     X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                                \
     X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
@@ -71,7 +73,7 @@ typedef enum vit_buffer {
     V_frame = B_COUNT,
     V_level,
     V_run,
-    V_split,
+    V_chunks,
     V_max_nodes,
     V_max_list,
     V_END
@@ -84,11 +86,9 @@ typedef enum vit_extent {
     PER_PATH,                  /* paths / lanes */
     PER_PHOTON,
     PER_MASK_WORD,
-    PER_NODE,                  /* max_nodes */
-    PER_BUCKET,                /* max_nodes * buckets */
     PER_LEVEL_NODE,            /* nodes of the level, at most */
     PER_PIXEL,
-    GROUP_PER_LEVEL_NODE,      /* a work-group of splat_group for each node of the level, times split */
+    GROUP_PER_LEVEL_NODE,      /* a work-group of splat_group for each node of the level; the root has `chunks` */
     ONE_GROUP,                 /* one work-group of scan_group */
 } vit_extent;
 
@@ -126,6 +126,7 @@ uint32_t vit_format_bytes(vit_format format);
 
 /* Work-items a work-group, and in all, of a pass at a level. */
 void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level, size_t *local, size_t *global);
+uint32_t vit_pass_chunks(const vit_pass *p, const vit_limits *l, uint32_t level);
 int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level);
 
 #endif

@@ -26,7 +26,8 @@ static inline embree embree_open(const ray_mesh *r, enum RTCSceneFlags flags) {
     rtcSetSceneFlags(e.scene, flags);
     RTCGeometry g = rtcNewGeometry(e.device, RTC_GEOMETRY_TYPE_TRIANGLE);
     /* A record is three times a position and one component of the normal: 16 bytes from vertex to vertex. */
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, r->packed.triangles, 0, 16, 3 * (size_t)r->m.triangles);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, r->packed.triangles, 0, 16,
+                               3 * (size_t)r->m.triangles);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, e.index, 0, 12, r->m.triangles);
     rtcCommitGeometry(g);
     rtcAttachGeometry(e.scene, g);

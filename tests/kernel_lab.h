@@ -1,5 +1,6 @@
 /* A laboratory for kernel functions: the library's own kernel sources with a test kernel behind them, built with the runtime's
- * options for the first OpenCL device, run on host arrays. Any OpenCL error fails the test that caused it and names the call. */
+ * options for the first OpenCL device, run on host arrays. Any OpenCL error fails the test that caused it and names the call.
+ */
 #ifndef VIT_TESTS_KERNEL_LAB_H
 #define VIT_TESTS_KERNEL_LAB_H
 

@@ -98,7 +98,7 @@ static inline void fixture_scene(vit_scene *s) {
                      .mips = 3,
                      .texels = FIXTURE_TEXELS,
                      .lights = FIXTURE_LIGHTS,
-                     .paths = 16,
+                     .paths = 32,
                      .baked = FIXTURE_BAKED,
                      .bounces = 3,
                      .radius = 0.5f,
@@ -134,7 +134,7 @@ static inline void fixture_frames(pack_fixture *f) {
                                                         .intensity = {8, 8, 8},
                                                         .falloff = VIT_FALLOFF_INVERSE_SQUARE,
                                                         .path_first = 0,
-                                                        .path_count = 16};
+                                                        .path_count = 32};
         f->golds[i] = (vit_gold){
             .xrgb8888 = {i + 1, 2}, .nodes = 7, .clusters = 4, .photons = 20, .list = 60, .pairs = 60, .largest = 19};
     }

@@ -12,7 +12,8 @@
 /* nearest_and_any: planes of origin, direction and limit in, nearest hit and occlusion out.
  * nearest_of_all: the same nearest hit without a tree, triangle after triangle. */
 static const char ray_lab_kernels[] =
-    "kernel void nearest_and_any(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float *distance,\n"
+    "kernel void nearest_and_any(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float "
+    "*distance,\n"
     "                            global uint *triangle, global uint *occluded)\n"
     "{\n"
     "    uint first = (uint)get_global_id(0) * VIT_LANES, n = count[0];\n"
@@ -24,7 +25,8 @@ static const char ray_lab_kernels[] =
     "    L_STORE(L_AS_UINT(found), triangle + first);\n"
     "    L_STORE(L_AS_UINT(ray_occluded(RAY_SCENE, &r, active, limit)), occluded + first);\n"
     "}\n"
-    "kernel void nearest_of_all(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float *distance,\n"
+    "kernel void nearest_of_all(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float "
+    "*distance,\n"
     "                           global uint *triangle, global uint *occluded)\n"
     "{\n"
     "    uint first = (uint)get_global_id(0) * VIT_LANES, n = count[0];\n"
@@ -169,8 +171,8 @@ static inline void hits_free(ray_hits *h) {
 }
 
 /* Casts the rays with one of the kernels above through `nodes` over the mesh's triangles. */
-static inline ray_hits rays_cast_through(lab *l, const char *kernel, unsigned lanes, const ray_mesh *r, const vit_bvh_node *nodes,
-                                         uint32_t node_count, const ray_set *s) {
+static inline ray_hits rays_cast_through(lab *l, const char *kernel, unsigned lanes, const ray_mesh *r,
+                                         const vit_bvh_node *nodes, uint32_t node_count, const ray_set *s) {
     const vit_scene constants = mesh_scene(r);
     const vit_u32 nothing[16] = {0};
     const size_t t = r->m.triangles, bytes = (size_t)s->n * 4;
@@ -208,7 +210,8 @@ static inline ray_hits rays_cast(lab *l, unsigned lanes, const ray_mesh *r, cons
 static inline void hits_equal(const ray_hits *a, const ray_hits *b) {
     assert_int_equal(a->n, b->n);
     for (uint32_t i = 0; i < a->n; i++)
-        if (memcmp(a->distance + i, b->distance + i, 4) != 0 || a->triangle[i] != b->triangle[i] || a->occluded[i] != b->occluded[i])
+        if (memcmp(a->distance + i, b->distance + i, 4) != 0 || a->triangle[i] != b->triangle[i] ||
+            a->occluded[i] != b->occluded[i])
             fail_msg("ray %u: triangle %u at %a, occluded %u, against triangle %u at %a, occluded %u", i, a->triangle[i],
                      (double)a->distance[i], a->occluded[i], b->triangle[i], (double)b->distance[i], b->occluded[i]);
 }

@@ -78,6 +78,14 @@ static void vaults(mesh *m) {
         }
     }
     m->frame = mesh_frame_at(v3_of(0, 0, 0), 0);
+    /* Where two wide ribs meet at a corner of the court they need more to stand on than the wall's end. */
+    const double in = 0.1, out = 0.42;
+    for (int i = 0; i < 4; i++) {
+        double x = i & 1 ? COURT_X : -COURT_X, z = i & 2 ? COURT_Z : -COURT_Z;
+        v3 lo = {x - (i & 1 ? in : out), SPRING, z - (i & 2 ? in : out)};
+        v3 hi = {x + (i & 1 ? out : in), GALLERY, z + (i & 2 ? out : in)};
+        shape_box(m, lo, hi, 1.0, SIDE_TOP);
+    }
 }
 
 /* Planks on cross beams and two lengthwise ones. */

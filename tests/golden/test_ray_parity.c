@@ -14,9 +14,10 @@
 #define RAYS (1u << 20)
 #define FEW (1u << 16)     /* rays for what is checked exactly at every width */
 #define MOST_EDGES 1e-5    /* of the rays */
-#define COINCIDENT 0x1p-21 /* of the largest coordinate or the distance: how far apart two triangles are that are one surface */
-#define EDGE 0x1p-23       /* of the largest coordinate; measured 0x1.6p-26 */
-#define ACROSS 0x1p-20     /* of the largest coordinate; measured 0x1.7p-22: what box_pad is there to cover */
+#define COINCIDENT 0x1p-21 /* of the largest coordinate or the distance: how far apart two triangles are that are one surface  \
+                            */
+#define EDGE 0x1p-23       /* of the largest coordinate; measured 0x1.6p-24 */
+#define ACROSS 0x1p-20     /* of the largest coordinate; measured 0x1.ap-22: what box_pad is there to cover */
 
 /* A closed hall of 99 372 triangles with bumpy walls. */
 static void bumpy_hall(float p[3]) {
@@ -165,8 +166,8 @@ typedef struct verdicts {
 } verdicts;
 
 /* Two different answers, a and b, to one ray. */
-static void judge_difference(verdicts *v, const ray_mesh *r, uint32_t ray, const float o[3], const float d[3], uint32_t a, uint32_t b,
-                             double largest) {
+static void judge_difference(verdicts *v, const ray_mesh *r, uint32_t ray, const float o[3], const float d[3], uint32_t a,
+                             uint32_t b, double largest) {
     exact_hit x[2] = {{0}, {0}};
     const uint32_t triangle[2] = {a, b};
     double edge = INFINITY;
@@ -183,12 +184,12 @@ static void judge_difference(verdicts *v, const ray_mesh *r, uint32_t ray, const
     v->misses += a == VIT_NONE || b == VIT_NONE;
     v->worst_edge = fmax(v->worst_edge, edge);
     if (!(edge <= EDGE))
-        fail_msg("ray %u: triangle %d (exactly at %g), Embree %d (exactly at %g), nearest edge %g m away", ray, (int)a, x[0].t, (int)b,
-                 x[1].t, edge * largest);
+        fail_msg("ray %u: triangle %d (exactly at %g), Embree %d (exactly at %g), nearest edge %g m away", ray, (int)a, x[0].t,
+                 (int)b, x[1].t, edge * largest);
 }
 
-static void judge_distance(verdicts *v, const vit_triangle *t, uint32_t ray, const float o[3], const float d[3], float ours, float theirs,
-                           double largest) {
+static void judge_distance(verdicts *v, const vit_triangle *t, uint32_t ray, const float o[3], const float d[3], float ours,
+                           float theirs, double largest) {
     const exact_hit x = exact_cast(t, o, d);
     const double apart = fabs((double)ours - (double)theirs), across = fabs((double)ours - x.t) * x.cosine / largest;
     v->worst_across = fmax(v->worst_across, across);
@@ -197,7 +198,8 @@ static void judge_distance(verdicts *v, const vit_triangle *t, uint32_t ray, con
         return;
     }
     if (!(across <= ACROSS && apart * x.cosine <= ACROSS * largest))
-        fail_msg("ray %u: at %.9g, Embree at %.9g, exactly at %.9g, cosine %g", ray, (double)ours, (double)theirs, x.t, x.cosine);
+        fail_msg("ray %u: at %.9g, Embree at %.9g, exactly at %.9g, cosine %g", ray, (double)ours, (double)theirs, x.t,
+                 x.cosine);
 }
 
 static void compare_with_embree(const char *name, const ray_mesh *r, const ray_set *s, const ray_hits *h) {
@@ -215,9 +217,10 @@ static void compare_with_embree(const char *name, const ray_mesh *r, const ray_s
             judge_distance(&v, r->packed.triangles + ours, i, o, d, h->distance[i], t, largest);
     }
     embree_close(&e);
-    print_message("%s: %u triangles, %u rays, %u hits; %u on coincident surfaces, %u at edges (hit or miss %u), the farthest %.2g of the "
-                  "scene's size away; distances wrong by %.2g of it across the surface\n",
-                  name, r->m.triangles, s->n, v.hits, v.coincident, v.edges, v.misses, v.worst_edge, v.worst_across);
+    print_message(
+        "%s: %u triangles, %u rays, %u hits; %u on coincident surfaces, %u at edges (hit or miss %u), the farthest %.2g of the "
+        "scene's size away; distances wrong by %.2g of it across the surface\n",
+        name, r->m.triangles, s->n, v.hits, v.coincident, v.edges, v.misses, v.worst_edge, v.worst_across);
     assert_true(v.hits > s->n / 4);
     assert_true((double)v.edges < MOST_EDGES * (double)s->n);
 }

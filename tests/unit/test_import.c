@@ -695,6 +695,17 @@ static void files_of_no_known_kind_are_refused(void **state) {
     refuse(FILE_OF("bad.glb"), false, "");
 }
 
+/* Assimp 5.2.5 would read these for ever. */
+static void a_ply_with_a_broken_header_is_refused(void **state) {
+    (void)state;
+    put(FILE_OF("b.ply"), "ply\nformat ascii 1.0\nelement vertex 0\nend_headr\n");
+    refuse(FILE_OF("b.ply"), false, "line 4: not a PLY header");
+    put(FILE_OF("b.ply"), "ply\nformat ascii 1.0\nelement vertex 0\n");
+    refuse(FILE_OF("b.ply"), false, "the PLY header has no end");
+    put(FILE_OF("b.ply"), "");
+    refuse(FILE_OF("b.ply"), false, "is no PLY file");
+}
+
 /* ---- the test scenes ---- */
 
 static const char *scene_path(const char *name) {
@@ -823,6 +834,7 @@ int main(void) {
         T(a_file_without_a_triangle_is_refused),
         T(a_missing_mesh_is_refused),
         T(files_of_no_known_kind_are_refused),
+        T(a_ply_with_a_broken_header_is_refused),
         T(real_scenes_have_the_triangles_that_others_counted),
         T(all_but_the_glass_of_the_kitchen_is_there),
         T(gltf_samples_have_their_triangles_and_textures),

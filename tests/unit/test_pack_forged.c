@@ -131,10 +131,11 @@
     X(LITE, spot_without_its_effect, "without the effect SPOT", EFFECTS(0, BIT(SPOT)))                                         \
     X(LITE, range_without_its_effect, "without the effect RANGE", EFFECTS(0, BIT(RANGE)))                                      \
     X(LITE, paths_beyond_the_last, "beyond", im->lights[1].path_first = 1)                                                     \
-    X(LITE, path_sum_that_wraps, "beyond", im->lights[1].path_first = 0xfffffff8, im->lights[1].path_count = 16)               \
-    X(LITE, paths_change_with_the_frame, "frame 1, light 1: paths differ", im->lights[3].path_count = 15)                      \
-    X(LITE, paths_shared, "lights 0 and 1 share", im->lights[0].path_count = im->lights[2].path_count = 1)                     \
-    X(LITE, paths_of_no_light, "15 photon paths", im->lights[1].path_count = im->lights[3].path_count = 15)                    \
+    X(LITE, paths_of_half_a_packet, "multiples of 16", im->lights[0].path_count = 8)                                           \
+    X(LITE, path_sum_that_wraps, "beyond", im->lights[1].path_first = 0xfffffff0, im->lights[1].path_count = 32)               \
+    X(LITE, paths_change_with_the_frame, "frame 1, light 1: paths differ", im->lights[3].path_count = 16)                      \
+    X(LITE, paths_shared, "lights 0 and 1 share", im->lights[0].path_count = im->lights[2].path_count = 16)                     \
+    X(LITE, paths_of_no_light, "16 photon paths", im->lights[1].path_count = im->lights[3].path_count = 16)                    \
     X(GEOM, vertex_is_nan, "triangle 11: vertex is not finite", im->triangles[11].v2[2] = NAN)                                 \
     X(GEOM, vertex_is_infinite, "triangle 0: vertex is not finite", im->triangles[0].v0[0] = INFINITY)                         \
     X(GEOM, normal_is_nan, "triangle 3: normal is not finite", im->triangles[3].ny = NAN)                                      \
@@ -214,9 +215,9 @@
     X(forward_a_little_short, im->cameras[0].forward[2] = -0.9995f)                                                            \
     X(dark_light, im->lights[0].intensity[0] = 0)                                                                              \
     X(unlimited_light_without_the_effect, im->lights[0].inv_range2 = im->lights[2].inv_range2 = 0, EFFECTS(0, BIT(RANGE)))     \
-    X(paths_side_by_side, share_paths(im, 0, 8))                                                                               \
-    X(paths_in_reverse, share_paths(im, 8, 0))                                                                                 \
-    X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 8)                                            \
+    X(paths_side_by_side, share_paths(im, 0, 16))                                                                               \
+    X(paths_in_reverse, share_paths(im, 16, 0))                                                                                 \
+    X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 16)                                            \
     X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK)                                       \
     X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
     X(emission, im->materials[0].emission[0] = FLT_MAX)                                                                        \
@@ -262,11 +263,11 @@ static void swap_children(vit_bvh_node *n) {
     n->child1 = child;
 }
 
-/* Half of the 16 paths for each light. */
+/* Half of the 32 paths for each light. */
 static void share_paths(image *im, vit_u32 first0, vit_u32 first1) {
     for (int i = 0; i < FIXTURE_FRAMES * FIXTURE_LIGHTS; i++) {
         im->lights[i].path_first = i % 2 ? first1 : first0;
-        im->lights[i].path_count = 8;
+        im->lights[i].path_count = 16;
     }
 }
 

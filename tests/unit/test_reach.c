@@ -172,6 +172,61 @@ static void no_small_triangle_is_darkened_by_bad_luck(void **state) {
     drop(f);
 }
 
+/* Specks of 2 mm in a row, facing down. */
+static uint32_t add_specks(fixture *f, int count, float y) {
+    const uint32_t first = f->m.triangles;
+    for (int i = 0; i < count; i++)
+        add_plate(f, (const float[]){-0.3f + 0.6f * (float)i / (float)count, y, 0}, (const float[]){0.002f, 0, 0},
+                  (const float[]){0, 0, 0.002f}, 1);
+    return first;
+}
+
+/* In the plane of the plate, so that nothing but the light lights them. */
+static void specks_that_see_the_light_alone_are_lit(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_plate(f, (const float[]){3, 3, 0}, (const float[]){1, 0, 0}, (const float[]){0, 0, 1}, 2);
+    const uint32_t specks = add_specks(f, 100, 3);
+    add_light(f, 0, 0, 0);
+    search(f, 2);
+    expect(f, specks, 200, VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+/* A plate that fills a twentieth of what the specks see is lit by a spot light that shines away from them. */
+static void specks_that_see_something_lit_in_a_corner_of_their_view_are_lit(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_plate(f, (const float[]){-0.4f, 0, -0.4f}, (const float[]){0, 0, 0.8f}, (const float[]){0.8f, 0, 0}, 2);
+    const uint32_t specks = add_specks(f, 100, 2);
+    add_light(f, 0, 1, 0);
+    f->lights[0].kind = VIT_LIGHT_SPOT;
+    f->lights[0].direction[1] = -1.0f;
+    f->lights[0].cos_outer = 0.9f;
+    search(f, 2);
+    expect(f, specks, 200, VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+/* Rays start above the surface; near a sharp edge that would be outside. */
+static void the_inside_of_a_sharp_wedge_is_dark(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    const uint32_t wedge = f->m.triangles; /* 17 degrees at x = -1 */
+    const float a[2][3] = {{-1, 1, -1}, {-1, 1, 1}}, b[2][3] = {{1, 1, -1}, {1, 1, 1}}, c[2][3] = {{1, 1.6f, -1}, {1, 1.6f, 1}};
+    const float along[3] = {0, 0, 2};
+    add_plate(f, a[0], (const float[]){2, 0, 0}, along, 40);
+    add_plate(f, b[0], (const float[]){0, 0.6f, 0}, along, 40);
+    add_plate(f, a[0], along, (const float[]){2, 0.6f, 0}, 40);
+    add_triangle(f, a[0], c[0], b[0]);
+    add_triangle(f, a[1], b[1], c[1]);
+    add_light(f, 0, 4, 0);
+    search(f, 2);
+    expect(f, wedge, f->m.triangles - wedge, VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
 static void light_passes_the_holes_of_a_cut_out(void **state) {
     (void)state;
     fixture *f = make();
@@ -259,6 +314,9 @@ int main(void) {
         cmocka_unit_test(light_finds_its_way_through_a_hole),
         cmocka_unit_test(faces_that_touch_are_dark_on_both_sides),
         cmocka_unit_test(no_small_triangle_is_darkened_by_bad_luck),
+        cmocka_unit_test(specks_that_see_the_light_alone_are_lit),
+        cmocka_unit_test(specks_that_see_something_lit_in_a_corner_of_their_view_are_lit),
+        cmocka_unit_test(the_inside_of_a_sharp_wedge_is_dark),
         cmocka_unit_test(light_passes_the_holes_of_a_cut_out),
         cmocka_unit_test(a_room_that_the_light_visits_for_one_frame_is_lit),
         cmocka_unit_test(a_spot_light_lights_only_its_cone),

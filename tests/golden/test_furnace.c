@@ -1,0 +1,239 @@
+/* White furnaces: closed rooms of one albedo, in which indirect irradiance is known exactly.
+ *
+ * What makes light hard to test is that nobody knows the right picture. Here it is known. In a closed room of area A and albedo rho
+ * around a light of power Phi, each reflection takes in all the light of the one before and gives back rho of it, whatever
+ * the room's shape and the light's place. With photons stored at reflections 1 .. K (a path of `bounces` hits stores all but the
+ * first: K = bounces - 1), the mean of indirect irradiance over the surface is
+ *     E = Phi / A * (rho + rho^2 + ... + rho^K).
+ * Photon powers add up to exactly that, so the mean has no noise: what the frames miss is the estimate's own error. In a sphere
+ * every point gives every other the same (the form factor is 1 / A), so there E holds at each point, which has noise.
+ *
+ * A camera inside looks along all six axes, one frame each, with a field of view of 90 degrees: together they see each point of the
+ * surface once. A pixel stands for the area d^2 dOmega / cos; in the box d and cos are computed here, not taken from the
+ * renderer, and must add up to the box's area.
+ *
+ * What remains: in the box, the kernel loses light over edges and takes some from the wall round the corner; both go with radius /
+ * width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. */
+#include "scene_lab.h"
+#include <math.h>
+
+#define PI 3.14159265358979
+#define SIDE 64 /* pixels of a frame's edge */
+#define VIEWS 6
+#define FLOATS ((size_t)4 * SIDE * SIDE * VIEWS)
+#define ALBEDO 0.5
+#define BOUNCES 8
+#define POWER 60.0 /* W a channel */
+#define LIST_WITHIN 0.02
+#define BUCKETS_WITHIN 0.05
+
+static const double box_lo[3] = {-1.2, -0.7, -1.5}, box_hi[3] = {1.0, 0.9, 1.3}, eye[3] = {0.1, 0.05, -0.2};
+/* View axis and up of each frame. */
+static const double axis[VIEWS][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+static const double up[VIEWS][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 0}};
+
+/* moving: photons are traced while playing; else they are baked. */
+static void write_scene(scene_lab *l, const char *name, const char *mesh, const double from[3], bool moving) {
+    FILE *f = scene_lab_create(l, name);
+    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"%s\"; } );\n", SIDE, SIDE,
+                  VIEWS, mesh);
+    (void)fprintf(f, "camera: { near = 0.1; keys = (");
+    for (int i = 0; i < VIEWS; i++)
+        (void)fprintf(f, "%s{ time = %d.0; fov = 90.0; eye = [%g, %g, %g]; target = [%g, %g, %g]; up = [%g, %g, %g]; }", i ? ", " : "",
+                      i, from[0], from[1], from[2], from[0] + axis[i][0], from[1] + axis[i][1], from[2] + axis[i][2], up[i][0],
+                      up[i][1], up[i][2]);
+    (void)fprintf(f, "); };\nlights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }", POWER,
+                  POWER, POWER);
+    if (moving)
+        (void)fprintf(f, ", { time = 5.0; position = [0.4, -0.1, -0.5]; }");
+    (void)fprintf(f, "); } );\nquality: { bounces = %d; tile = 8; };\n", BOUNCES);
+    (void)fclose(f);
+}
+
+static void write_box(scene_lab *l) {
+    static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}};
+    FILE *f = scene_lab_create(l, "box.obj");
+    (void)fprintf(f, "mtllib half.mtl\nusemtl half\n");
+    for (int i = 0; i < 8; i++)
+        (void)fprintf(f, "v %g %g %g\n", i & 4 ? box_hi[0] : box_lo[0], i & 2 ? box_hi[1] : box_lo[1], i & 1 ? box_hi[2] : box_lo[2]);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) /* normals of the sides, so that none are made smooth */
+            (void)fprintf(f, "vn %d %d %d\n", k == 0 ? 1 - 2 * i : 0, k == 1 ? 1 - 2 * i : 0, k == 2 ? 1 - 2 * i : 0);
+    for (int i = 0; i < 6; i++) {
+        static const int normal[6] = {1, 2, 3, 4, 5, 6};
+        (void)fprintf(f, "f");
+        for (int k = 0; k < 4; k++)
+            (void)fprintf(f, " %d//%d", side[i][k], normal[i]);
+        (void)fprintf(f, "\n");
+    }
+    (void)fclose(f);
+}
+
+/* Unit sphere: a cube's faces of n x n cells, blown up; normals are the positions. */
+static void write_sphere(scene_lab *l, int n) {
+    FILE *f = scene_lab_create(l, "sphere.obj");
+    (void)fprintf(f, "mtllib half.mtl\nusemtl half\n");
+    for (int side = 0; side < 6; side++)
+        for (int j = 0; j <= n; j++)
+            for (int i = 0; i <= n; i++) {
+                double p[3], u = tan(PI / 4 * (2.0 * i / n - 1)), v = tan(PI / 4 * (2.0 * j / n - 1)), r = sqrt(1 + u * u + v * v);
+                p[side / 2] = (side & 1 ? -1 : 1) / r;
+                p[(side / 2 + 1) % 3] = u / r;
+                p[(side / 2 + 2) % 3] = v / r;
+                (void)fprintf(f, "v %.7f %.7f %.7f\nvn %.7f %.7f %.7f\n", p[0], p[1], p[2], -p[0], -p[1], -p[2]);
+            }
+    for (int side = 0; side < 6; side++)
+        for (int j = 0; j < n; j++)
+            for (int i = 0; i < n; i++) {
+                int a = (side * (n + 1) + j) * (n + 1) + i + 1, b = a + 1, c = b + n + 1, d = a + n + 1;
+                (void)fprintf(f, "f %d//%d %d//%d %d//%d %d//%d\n", a, a, b, b, c, c, d, d);
+            }
+    (void)fclose(f);
+}
+
+static int set_up(void **state) {
+    static scene_lab lab;
+    scene_lab_open(&lab);
+    FILE *f = scene_lab_create(&lab, "half.mtl");
+    (void)fprintf(f, "newmtl half\nKd %g %g %g\n", ALBEDO, ALBEDO, ALBEDO);
+    (void)fclose(f);
+    static const double centre[3] = {0, 0, 0};
+    write_box(&lab);
+    write_sphere(&lab, 48);
+    write_scene(&lab, "box.cfg", "box.obj", eye, false);
+    write_scene(&lab, "box_moving.cfg", "box.obj", eye, true);
+    write_scene(&lab, "sphere.cfg", "sphere.obj", centre, false);
+    *state = &lab;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    scene_lab_close(*state);
+    return 0;
+}
+
+static double analytic(double area) {
+    double sum = 0, part = 1;
+    for (int k = 1; k < BOUNCES; k++)
+        sum += part *= ALBEDO;
+    return POWER / area * sum;
+}
+
+static double box_area(void) {
+    const double x = box_hi[0] - box_lo[0], y = box_hi[1] - box_lo[1], z = box_hi[2] - box_lo[2];
+    return 2 * (x * y + y * z + z * x);
+}
+
+/* Solid angle of a pixel, sr. */
+static double solid_angle(int x, int y) {
+    const double u = (2 * x + 1.0) / SIDE - 1, v = (2 * y + 1.0) / SIDE - 1, step = 2.0 / SIDE;
+    return step * step / pow(1 + u * u + v * v, 1.5);
+}
+
+/* Area of the box's surface that a pixel of view i sees, m2. */
+static double pixel_area(int i, int x, int y) {
+    const double u = (2 * x + 1.0) / SIDE - 1, v = 1 - (2 * y + 1.0) / SIDE;
+    const double right[3] = {axis[i][1] * up[i][2] - axis[i][2] * up[i][1], axis[i][2] * up[i][0] - axis[i][0] * up[i][2],
+                             axis[i][0] * up[i][1] - axis[i][1] * up[i][0]};
+    double d[3], length = sqrt(1 + u * u + v * v), t = 1e30, cosine = 1;
+    for (int k = 0; k < 3; k++)
+        d[k] = (axis[i][k] + u * right[k] + v * up[i][k]) / length;
+    for (int k = 0; k < 3; k++)
+        if (fabs(d[k]) > 1e-12) {
+            const double at = ((d[k] > 0 ? box_hi[k] : box_lo[k]) - eye[k]) / d[k];
+            if (at < t) {
+                t = at;
+                cosine = fabs(d[k]);
+            }
+        }
+    return t * t * solid_angle(x, y) / cosine;
+}
+
+/* Albedo as view samples store it: a square root in 10 bits. */
+static double stored_albedo(void) {
+    const double root = floor(sqrt(ALBEDO) * 1023 + 0.5) / 1023;
+    return root * root;
+}
+
+/* Mean over the box of indirect irradiance, over the analytic one. */
+static double box_ratio(scene_lab *l, const char *scene, const char *options) {
+    static float pixels[FLOATS];
+    scene_lab_indirect(l, scene, options, pixels, FLOATS);
+    double light = 0, area = 0;
+    for (int i = 0; i < VIEWS; i++)
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++) {
+                const double a = pixel_area(i, x, y);
+                light += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                area += a;
+            }
+    assert_true(fabs(area / box_area() - 1) < 2e-3); /* the views see the box once, all of it */
+    const double ratio = light / box_area() / analytic(box_area());
+    printf("box     %-44s %+.2f %%\n", options, 100 * (ratio - 1));
+    return ratio;
+}
+
+/* Largest deviation from the analytic irradiance of the six views' means in the unit sphere. */
+static double sphere_deviation(scene_lab *l, const char *options) {
+    static float pixels[FLOATS];
+    double worst = 0;
+    scene_lab_indirect(l, "sphere.cfg", options, pixels, FLOATS);
+    printf("sphere  %-44s", options);
+    for (int i = 0; i < VIEWS; i++) {
+        double light = 0, whole = 0;
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++) {
+                light += solid_angle(x, y) * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                whole += solid_angle(x, y);
+            }
+        const double off = light / whole / analytic(4 * PI) - 1;
+        printf(" %+.2f", 100 * off);
+        worst = fabs(off) > worst ? fabs(off) : worst;
+    }
+    printf(" %%\n");
+    return worst;
+}
+
+static void the_list_estimate_keeps_all_light_in_a_box(void **state) {
+    assert_true(fabs(box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.1") - 1) < LIST_WITHIN);
+    assert_true(fabs(box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25") - 1) < LIST_WITHIN);
+}
+
+static void photons_traced_while_playing_carry_the_same_light(void **state) {
+    assert_true(fabs(box_ratio(*state, "box_moving.cfg", "--photons 65536 --radius 0.1") - 1) < LIST_WITHIN);
+}
+
+static void the_bucket_estimate_keeps_all_light_in_a_box(void **state) {
+    assert_true(fabs(box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --estimate buckets") - 1) < BUCKETS_WITHIN);
+}
+
+static void the_list_estimate_is_right_everywhere_in_a_sphere(void **state) {
+    assert_true(sphere_deviation(*state, "--photons 262144 --radius 0.1") < LIST_WITHIN);
+}
+
+static void the_bucket_estimate_is_right_everywhere_in_a_sphere(void **state) {
+    assert_true(sphere_deviation(*state, "--photons 262144 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
+}
+
+static void other_settings_are_only_reported(void **state) {
+    static const char *const options[] = {"--estimate buckets --smoothing raw", "--kernel flattened",
+                                          "--kernel flattened --estimate buckets", "--estimate buckets --normal-keys 1"};
+    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
+        char line[160];
+        (void)snprintf(line, sizeof line, "--photons 65536 --radius 0.25 %s", options[i]);
+        (void)box_ratio(*state, "box.cfg", line);
+        (void)sphere_deviation(*state, line);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_list_estimate_keeps_all_light_in_a_box),
+        cmocka_unit_test(photons_traced_while_playing_carry_the_same_light),
+        cmocka_unit_test(the_bucket_estimate_keeps_all_light_in_a_box),
+        cmocka_unit_test(the_list_estimate_is_right_everywhere_in_a_sphere),
+        cmocka_unit_test(the_bucket_estimate_is_right_everywhere_in_a_sphere),
+        cmocka_unit_test(other_settings_are_only_reported),
+    };
+    return cmocka_run_group_tests_name("furnace", tests, set_up, tear_down);
+}

@@ -1,0 +1,110 @@
+/* A scene made by a test, baked and played by the real programs, its indirect light read back as linear floats. All files lie in a
+ * folder of the test's own. Programs run as from a shell, so what is tested is what a user gets. */
+#ifndef VIT_TESTS_SCENE_LAB_H
+#define VIT_TESTS_SCENE_LAB_H
+
+#include "vitrine.h"
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#define SCENE_LAB_FILES 16
+#define SCENE_LAB_WORDS 40
+#define SCENE_LAB_SECONDS 300 /* a program that hangs is killed */
+
+typedef struct scene_lab {
+    char folder[64];
+    char files[SCENE_LAB_FILES][96]; /* what scene_lab_close() removes */
+    size_t file_count;
+} scene_lab;
+
+static inline void scene_lab_open(scene_lab *l) {
+    *l = (scene_lab){.folder = "/tmp/vitrine-test-XXXXXX"};
+    assert_non_null(mkdtemp(l->folder));
+}
+
+static inline void scene_lab_close(scene_lab *l) {
+    for (size_t i = 0; i < l->file_count; i++)
+        (void)unlink(l->files[i]);
+    (void)rmdir(l->folder);
+}
+
+/* Path of a file in the folder. */
+static inline const char *scene_lab_path(scene_lab *l, const char *name) {
+    char path[96];
+    (void)snprintf(path, sizeof path, "%s/%s", l->folder, name);
+    for (size_t i = 0; i < l->file_count; i++)
+        if (strcmp(l->files[i], path) == 0)
+            return l->files[i];
+    assert_true(l->file_count < SCENE_LAB_FILES);
+    return strcpy(l->files[l->file_count++], path);
+}
+
+static inline FILE *scene_lab_create(scene_lab *l, const char *name) {
+    FILE *f = fopen(scene_lab_path(l, name), "w");
+    assert_non_null(f);
+    return f;
+}
+
+/* Runs a program of the build with the words of `line`, split at spaces; it must succeed. What it prints is shown only if not. */
+static inline void scene_lab_run(scene_lab *l, const char *program, const char *line) {
+    char path[256], copy[1024], *words[SCENE_LAB_WORDS + 2] = {path}, *rest = NULL;
+    size_t count = 1;
+    const char *out = scene_lab_path(l, "out.txt");
+    (void)snprintf(path, sizeof path, "%s/%s", VIT_BUILD_DIR, program);
+    assert_true(snprintf(copy, sizeof copy, "%s", line) < (int)sizeof copy);
+    for (char *word = strtok_r(copy, " ", &rest); word != NULL; word = strtok_r(NULL, " ", &rest)) {
+        assert_true(count <= SCENE_LAB_WORDS);
+        words[count++] = word;
+    }
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        int to = open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        if (to >= 0 && dup2(to, STDOUT_FILENO) >= 0 && dup2(to, STDERR_FILENO) >= 0) {
+            (void)alarm(SCENE_LAB_SECONDS);
+            (void)execv(path, words);
+        }
+        _exit(127);
+    }
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == VIT_OK)
+        return;
+    char text[2048] = "";
+    FILE *f = fopen(out, "r");
+    if (f != NULL) {
+        text[fread(text, 1, sizeof text - 1, f)] = '\0';
+        (void)fclose(f);
+    }
+    fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
+}
+
+/* Bakes `scene`, a file of the folder or a whole path, with more options, and plays it: `pixels` takes the indirect radiance times
+ * exposure of all frames, four floats a pixel. */
+static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
+    char line[1024];
+    const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s", scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene),
+                   pack, options);
+    scene_lab_run(l, "vitrine-bake", line);
+    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet", pack, raw);
+    scene_lab_run(l, "vitrine-play", line);
+    struct stat size;
+    assert_int_equal(stat(raw, &size), 0);
+    assert_int_equal((size_t)size.st_size, floats * sizeof *pixels);
+    FILE *f = fopen(raw, "rb");
+    assert_non_null(f);
+    assert_int_equal(fread(pixels, sizeof *pixels, floats, f), floats);
+    (void)fclose(f);
+}
+
+#endif
