@@ -1,7 +1,7 @@
 /* Pass 11: light to pixels. METHODS.md P, step 10: radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
  * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format. */
 
-/* IEC 61966-2-1 curve, 0..1. Absolute error below 2e-7 (tests/numeric). */
+/* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */
 static inline lf srgb_curve(lf x)
 {
     lf c = l_min(l_max(x, (lf)0), (lf)1);

@@ -61,7 +61,7 @@ static void the_format_has_not_changed_without_a_new_version(void **state) {
 
 static void the_hash_is_xxh3_64(void **state) {
     (void)state;
-    assert_true(vit_hash("", 0) == 0x9160ba90d9886a50u); /* the test vector of the XXH3 specification */
+    assert_true(vit_hash("", 0) == 0x2d06800538d394c2u); /* the test vector of the XXH3 specification */
 }
 
 static void empty_sections_are_accepted_and_have_no_address(void **state) {
