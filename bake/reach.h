@@ -10,7 +10,7 @@
  * REACH_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
  * everywhere. */
 #define REACH_ALBEDO 0.8f
-#define REACH_THRESHOLD 1e-3f
+#define REACH_THRESHOLD 1e-4f
 
 typedef struct reach {
     double area;                  /* m2, both sides of all triangles */

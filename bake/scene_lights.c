@@ -1,7 +1,7 @@
 #include "scene_reader.h"
 #include <stdio.h>
 
-enum { MAX_LIGHTS = 256 };
+enum { MAX_LIGHTS = 64 };
 
 enum { LIGHT_USE, LIGHT_TYPE, LIGHT_INNER, LIGHT_OUTER };
 static const field light_fields[] = {

@@ -1,6 +1,7 @@
 # One program a test file; each ends with cmocka's summary line. `make test` runs them all.
 TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
-BENCH_PROGRAMS := $(patsubst %.c,$(B)/%,$(BENCH))
+# Sources, or names from the command line: make bench BENCH="rays open".
+BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
 SCENES_MADE := $(B)/scenes/atrium.obj
 

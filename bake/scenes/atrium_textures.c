@@ -92,17 +92,23 @@ static void wood_pattern(double u, double v, double rgb[3]) {
     mix(rgb, dark, 1.0 - smoothstep(0.01, 0.035, border(y)));
 }
 
+/* 1 where x is less than `limit`, with a soft edge. */
+static double within(double x, double limit) {
+    return 1.0 - smoothstep(limit - 0.006, limit + 0.006, x);
+}
+
 /* Painted pottery: a band of waves and one of lozenges between rings, on a pale glaze. */
 static void glaze_pattern(double u, double v, double rgb[3]) {
     static const double pale[3] = {0.86, 0.84, 0.78}, blue[3] = {0.14, 0.26, 0.56}, gold[3] = {0.78, 0.58, 0.24};
     set(rgb, pale, 0.95 + 0.06 * noise_fractal(u, v, 16, 3, 91));
     double wave = 0.5 + 0.16 * sine(2.0 * PI * 6.0 * u), lozenge = border(u * 12.0) + border(v * 4.0);
-    if (fabs(v - wave) < 0.05)
-        mix(rgb, blue, 1.0);
-    if ((v < 0.25 || v > 0.75) && lozenge < 0.42)
-        mix(rgb, lozenge < 0.2 ? gold : blue, 1.0);
-    if (fabs(v - 0.28) < 0.015 || fabs(v - 0.72) < 0.015 || v < 0.015 || v > 0.985)
-        mix(rgb, gold, 1.0);
+    mix(rgb, blue, within(fabs(v - wave), 0.05));
+    double fields = v < 0.25 || v > 0.75 ? 1.0 : 0.0;
+    mix(rgb, blue, fields * within(lozenge, 0.42));
+    mix(rgb, gold, fields * within(lozenge, 0.2));
+    mix(rgb, gold, within(fabs(v - 0.28), 0.015));
+    mix(rgb, gold, within(fabs(v - 0.72), 0.015));
+    mix(rgb, gold, within(border(v), 0.015));
 }
 
 /* Woven cloth: v = 0..1 from top to hem. A gold border, and gold lozenges with a flower of four leaves in each. */
@@ -151,7 +157,7 @@ const texture *atrium_textures(size_t *count) {
         {"marble.png", 1024, 1024, marble_pattern},       {"court.png", 1024, 1024, court_pattern},
         {"terracotta.png", 512, 512, terracotta_pattern}, {"ashlar.png", 1024, 1024, ashlar_pattern},
         {"plaster.png", 512, 512, plaster_pattern},       {"wood.png", 512, 512, wood_pattern},
-        {"glaze.png", 512, 512, glaze_pattern},           {"red.png", 512, 1024, red_pattern},
+        {"glaze.png", 1024, 1024, glaze_pattern},         {"red.png", 512, 1024, red_pattern},
         {"green.png", 512, 1024, green_pattern},          {"blue.png", 512, 1024, blue_pattern},
         {"leaves.png", 256, 256, leaves_pattern},
     };

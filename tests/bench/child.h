@@ -11,7 +11,8 @@
 #ifdef __GNUC__
 __attribute__((noreturn))
 #endif
-static inline void child_become(char *const argv[], int out, const char *cache) {
+static inline void
+child_become(char *const argv[], int out, const char *cache) {
     const int to = out >= 0 ? out : open("/dev/null", O_WRONLY);
     dup2(to, STDOUT_FILENO);
     if (cache && (setenv("POCL_CACHE_DIR", cache, 1) != 0 || setenv("CUDA_CACHE_PATH", cache, 1) != 0))
@@ -26,7 +27,8 @@ static inline void child_end(pid_t pid, const char *name) {
         bench_fail("%s failed", name);
 }
 
-/* Milliseconds until `argv` has ended; with `first_byte`, until it has written something to stdout (it then runs to its end). */
+/* Milliseconds until `argv` has ended; with `first_byte`, until it has written something to stdout (it then runs to its end).
+ */
 static inline double child_run(char *const argv[], const char *cache, bool first_byte) {
     int ends[2];
     char byte;

@@ -16,7 +16,8 @@
 #ifdef __GNUC__
 __attribute__((format(printf, 1, 2), noreturn))
 #endif
-static inline void bench_fail(const char *format, ...) {
+static inline void
+bench_fail(const char *format, ...) {
     va_list a;
     va_start(a, format);
     fputs("bench: ", stderr);

@@ -1,4 +1,5 @@
-/* The scenes of the benches, and their packs: baked by vitrine-bake when missing or older than the baker, kept for the next run. */
+/* The scenes of the benches, and their packs: baked by vitrine-bake when missing or older than the baker, kept for the next
+ * run. */
 #ifndef VIT_BENCH_SCENES_H
 #define VIT_BENCH_SCENES_H
 
@@ -9,14 +10,14 @@
 
 typedef struct bench_scene {
     const char *name;
-    const char *mesh;      /* in the folder of test scenes, or of our own */
-    bool own;              /* made by make-scenes */
-    double radius;         /* metres: a second one beside auto; 0: none */
+    const char *mesh; /* in the folder of test scenes, or of our own */
+    bool own;         /* made by make-scenes */
+    double radius;    /* metres: a second one beside auto; 0: none */
     const char *camera, *light;
 } bench_scene;
 
-/* One moving point light each. Frame 0 has the light where the scenes' README has it. Sponza's radius gives about the photon-cluster
- * pairs of the source at 1920x1080. */
+/* One moving point light each. Frame 0 has the light where the scenes' README has it. Sponza's radius gives about the
+ * photon-cluster pairs of the source at 1920x1080. */
 static const bench_scene bench_scenes[] = {
     {"atrium", "atrium.obj", true, 0, "eye = [-9.6, 1.7, 1.7]; target = [2.0, 3.3, -0.9]; fov = 62.0;",
      "{ position = [-2.4, 2.8, -2.0]; power = [1100.0, 860.0, 570.0]; }, { time = 0.125; position = [2.6, 5.2, 1.6]; }"},
@@ -34,16 +35,19 @@ static const char *const bench_sizes[] = {"1280x720", "1920x1080"};
 
 /* Absolute path of the scene's mesh; false, with a message, if there is none. */
 static inline bool scene_mesh_path(const bench_scene *s, char out[BENCH_PATH]) {
-    const char *given = getenv("VITRINE_SCENES"), *folder = s->own ? VIT_BUILD_DIR "/scenes" : given ? given : "../shared/scenes";
-    char path[BENCH_PATH];
+    const char *given = getenv("VITRINE_SCENES"), *folder = s->own  ? VIT_BUILD_DIR "/scenes"
+                                                            : given ? given
+                                                                    : "../shared/scenes";
+    char path[BENCH_PATH / 2], here[BENCH_PATH / 2 - 1];
     snprintf(path, sizeof path, "%s/%s", folder, s->mesh);
-    char *real = realpath(path, NULL);
-    if (!real)
+    if (access(path, R_OK) != 0) {
         printf("%s: skipped, there is no %s (VITRINE_SCENES names the folder of test scenes)\n", s->name, path);
-    else
-        snprintf(out, BENCH_PATH, "%s", real);
-    free(real);
-    return real != NULL;
+        return false;
+    }
+    if (!getcwd(here, sizeof here))
+        bench_fail("the current folder has no path: %s", strerror(errno));
+    snprintf(out, BENCH_PATH, "%s%s%s", path[0] == '/' ? "" : here, path[0] == '/' ? "" : "/", path);
+    return true;
 }
 
 static inline bool file_says(const char *path, const char *text) {
@@ -61,7 +65,8 @@ static inline bool file_says(const char *path, const char *text) {
 static inline void scene_write(const bench_scene *s, const char *mesh, const char *path) {
     char text[4096];
     snprintf(text, sizeof text,
-             "name = \"%s\";\noutput: { frames = %u; fps = 24.0; };\nbackground = [0.1, 0.1, 0.1];\nmeshes = ( { file = \"%s\"; } );\n"
+             "name = \"%s\";\noutput: { frames = %u; fps = 24.0; };\nbackground = [0.1, 0.1, 0.1];\nmeshes = ( { file = "
+             "\"%s\"; } );\n"
              "camera: { keys = ( { %s } ); };\nlights = ( { type = \"point\"; keys = ( %s ); } );\n"
              "quality: { photons = 17000; bounces = 4; radius = \"auto\"; tile = 32; estimate = \"list\"; };\n",
              s->name, BENCH_FRAMES, mesh, s->camera, s->light);
@@ -76,7 +81,8 @@ static inline bool is_newer(const char *path, const char *than) {
     struct stat a, b;
     if (stat(path, &a) != 0 || stat(than, &b) != 0)
         return false;
-    return a.st_mtim.tv_sec > b.st_mtim.tv_sec || (a.st_mtim.tv_sec == b.st_mtim.tv_sec && a.st_mtim.tv_nsec >= b.st_mtim.tv_nsec);
+    return a.st_mtim.tv_sec > b.st_mtim.tv_sec ||
+           (a.st_mtim.tv_sec == b.st_mtim.tv_sec && a.st_mtim.tv_nsec >= b.st_mtim.tv_nsec);
 }
 
 /* Path of the pack of scene and size, baked if need be; false if the scene is not at hand. */

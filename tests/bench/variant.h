@@ -41,7 +41,7 @@ static inline void image_free(pack_image *p) {
 }
 
 #define VARIANT_PHOTON_EFFECTS                                                                                                 \
-    (uint32_t)(VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                  \
+    (uint32_t)(VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                 \
                VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS)
 
 typedef struct variant {
@@ -60,7 +60,8 @@ typedef struct variant_records {
 static inline void variant_apply(const variant *v, variant_records *r) {
     vit_scene *s = &r->scene;
     if (v->estimate)
-        s->effects = (s->effects & ~(uint32_t)(VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS)) | v->estimate;
+        s->effects =
+            (s->effects & ~(uint32_t)(VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS)) | v->estimate;
     if (v->estimate && v->radius > 0)
         s->radius = (float)v->radius;
     if (!v->estimate) {
@@ -146,7 +147,8 @@ static inline vit_statistics player_stats(player *p) {
 static inline void *player_buffer(player *p, uint32_t buffer) {
     const size_t bytes = (size_t)vit_buffer_bytes(buffer, p->v->pack.scene, &p->v->limits);
     void *out = bench_array(bytes, 1);
-    if (clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[buffer], CL_TRUE, 0, bytes, out, 0, NULL, NULL) != CL_SUCCESS)
+    if (clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[buffer], CL_TRUE, 0, bytes, out, 0, NULL, NULL) !=
+        CL_SUCCESS)
         bench_fail("buffer %s cannot be read", vit_buffer_names[buffer]);
     return out;
 }

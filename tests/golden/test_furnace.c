@@ -1,19 +1,18 @@
 /* White furnaces: closed rooms of one albedo, in which indirect irradiance is known exactly.
  *
- * What makes light hard to test is that nobody knows the right picture. Here it is known. In a closed room of area A and albedo rho
- * around a light of power Phi, each reflection takes in all the light of the one before and gives back rho of it, whatever
- * the room's shape and the light's place. With photons stored at reflections 1 .. K (a path of `bounces` hits stores all but the
- * first: K = bounces - 1), the mean of indirect irradiance over the surface is
- *     E = Phi / A * (rho + rho^2 + ... + rho^K).
+ * What makes light hard to test is that nobody knows the right picture. Here it is known. In a closed room of area A and albedo
+ * rho around a light of power Phi, each reflection takes in all the light of the one before and gives back rho of it, whatever
+ * the room's shape and the light's place. With photons stored at reflections 1 .. K (a path of `bounces` hits stores all but
+ * the first: K = bounces - 1), the mean of indirect irradiance over the surface is E = Phi / A * (rho + rho^2 + ... + rho^K).
  * Photon powers add up to exactly that, so the mean has no noise: what the frames miss is the estimate's own error. In a sphere
  * every point gives every other the same (the form factor is 1 / A), so there E holds at each point, which has noise.
  *
- * A camera inside looks along all six axes, one frame each, with a field of view of 90 degrees: together they see each point of the
- * surface once. A pixel stands for the area d^2 dOmega / cos; in the box d and cos are computed here, not taken from the
+ * A camera inside looks along all six axes, one frame each, with a field of view of 90 degrees: together they see each point of
+ * the surface once. A pixel stands for the area d^2 dOmega / cos; in the box d and cos are computed here, not taken from the
  * renderer, and must add up to the box's area.
  *
- * What remains: in the box, the kernel loses light over edges and takes some from the wall round the corner; both go with radius /
- * width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. */
+ * What remains: in the box, the kernel loses light over edges and takes some from the wall round the corner; both go with
+ * radius / width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. */
 #include "scene_lab.h"
 #include <math.h>
 
@@ -35,15 +34,16 @@ static const double up[VIEWS][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}, 
 /* moving: photons are traced while playing; else they are baked. */
 static void write_scene(scene_lab *l, const char *name, const char *mesh, const double from[3], bool moving) {
     FILE *f = scene_lab_create(l, name);
-    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"%s\"; } );\n", SIDE, SIDE,
-                  VIEWS, mesh);
+    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"%s\"; } );\n", SIDE,
+                  SIDE, VIEWS, mesh);
     (void)fprintf(f, "camera: { near = 0.1; keys = (");
     for (int i = 0; i < VIEWS; i++)
-        (void)fprintf(f, "%s{ time = %d.0; fov = 90.0; eye = [%g, %g, %g]; target = [%g, %g, %g]; up = [%g, %g, %g]; }", i ? ", " : "",
-                      i, from[0], from[1], from[2], from[0] + axis[i][0], from[1] + axis[i][1], from[2] + axis[i][2], up[i][0],
-                      up[i][1], up[i][2]);
-    (void)fprintf(f, "); };\nlights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }", POWER,
-                  POWER, POWER);
+        (void)fprintf(f, "%s{ time = %d.0; fov = 90.0; eye = [%g, %g, %g]; target = [%g, %g, %g]; up = [%g, %g, %g]; }",
+                      i ? ", " : "", i, from[0], from[1], from[2], from[0] + axis[i][0], from[1] + axis[i][1],
+                      from[2] + axis[i][2], up[i][0], up[i][1], up[i][2]);
+    (void)fprintf(f,
+                  "); };\nlights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }",
+                  POWER, POWER, POWER);
     if (moving)
         (void)fprintf(f, ", { time = 5.0; position = [0.4, -0.1, -0.5]; }");
     (void)fprintf(f, "); } );\nquality: { bounces = %d; tile = 8; };\n", BOUNCES);
@@ -55,7 +55,8 @@ static void write_box(scene_lab *l) {
     FILE *f = scene_lab_create(l, "box.obj");
     (void)fprintf(f, "mtllib half.mtl\nusemtl half\n");
     for (int i = 0; i < 8; i++)
-        (void)fprintf(f, "v %g %g %g\n", i & 4 ? box_hi[0] : box_lo[0], i & 2 ? box_hi[1] : box_lo[1], i & 1 ? box_hi[2] : box_lo[2]);
+        (void)fprintf(f, "v %g %g %g\n", i & 4 ? box_hi[0] : box_lo[0], i & 2 ? box_hi[1] : box_lo[1],
+                      i & 1 ? box_hi[2] : box_lo[2]);
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 2; i++) /* normals of the sides, so that none are made smooth */
             (void)fprintf(f, "vn %d %d %d\n", k == 0 ? 1 - 2 * i : 0, k == 1 ? 1 - 2 * i : 0, k == 2 ? 1 - 2 * i : 0);
@@ -76,7 +77,8 @@ static void write_sphere(scene_lab *l, int n) {
     for (int side = 0; side < 6; side++)
         for (int j = 0; j <= n; j++)
             for (int i = 0; i <= n; i++) {
-                double p[3], u = tan(PI / 4 * (2.0 * i / n - 1)), v = tan(PI / 4 * (2.0 * j / n - 1)), r = sqrt(1 + u * u + v * v);
+                double p[3], u = tan(PI / 4 * (2.0 * i / n - 1)), v = tan(PI / 4 * (2.0 * j / n - 1)),
+                             r = sqrt(1 + u * u + v * v);
                 p[side / 2] = (side & 1 ? -1 : 1) / r;
                 p[(side / 2 + 1) % 3] = u / r;
                 p[(side / 2 + 2) % 3] = v / r;

@@ -12,12 +12,13 @@
 #include "embree_reference.h"
 
 #define RAYS (1u << 20)
-#define FEW (1u << 16)     /* rays for what is checked exactly at every width */
-#define MOST_EDGES 1e-5    /* of the rays */
-#define COINCIDENT 0x1p-21 /* of the largest coordinate or the distance: how far apart two triangles are that are one surface  \
-                            */
-#define EDGE 0x1p-23       /* of the largest coordinate; measured 0x1.6p-24 */
-#define ACROSS 0x1p-20     /* of the largest coordinate; measured 0x1.ap-22: what box_pad is there to cover */
+#define FEW (1u << 16)  /* rays for what is checked exactly at every width */
+#define MOST_EDGES 1e-5 /* of the rays */
+#define COINCIDENT                                                                                                             \
+    0x1p-21            /* of the largest coordinate or the distance: how far apart two triangles are that are one surface      \
+                        */
+#define EDGE 0x1p-23   /* of the largest coordinate; measured 0x1.6p-24 */
+#define ACROSS 0x1p-20 /* of the largest coordinate; measured 0x1.ap-22: what box_pad is there to cover */
 
 /* A closed hall of 99 372 triangles with bumpy walls. */
 static void bumpy_hall(float p[3]) {
