@@ -86,6 +86,8 @@ typedef struct vit_open_info {
     uint32_t group;            /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
     vit_format format;
     vit_view view;
+    void *framebuffer;         /* optional: vit_requirements.frame_bytes, 64-byte aligned, alive until vit_close(). Where the device shares
+                                * the host's memory, frames are rendered into it in place: give vit_frame() the same pointer */
     uint32_t profile;          /* 1: time each pass (vit_stats.pass_ms) */
     uint32_t max_nodes;        /* not 0: lower or raise this bound of the pack (tests, baker) */
     uint32_t max_list;         /* likewise */
@@ -139,8 +141,8 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
 /* Checks again, builds the kernels, makes every buffer. VIT_FAILED: no such device, out of device memory, a build error. */
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why);
 
-/* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it.
- * A NULL framebuffer renders without the transfer. */
+/* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it. Without a copy if it is
+ * vit_open_info.framebuffer, tightly packed. A NULL framebuffer renders without the transfer. */
 vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why);
 
 /* Golden XXH3-64 hash of frame `index` in the format that `v` was opened with; 0 if the pack holds none. */

@@ -145,7 +145,7 @@ static vit_status build(vit_device *d, const vit_limits *l, vit_text *why) {
 }
 
 /* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat. */
-static vit_status make_buffer(vit_device *d, uint32_t b, const vit_pack *pack, const vit_limits *l, vit_text *why) {
+static vit_status make_buffer(vit_device *d, uint32_t b, const vit_pack *pack, const vit_limits *l, void *framebuffer, vit_text *why) {
     uint64_t bytes = vit_buffer_bytes(b, pack->scene, l);
     vit_section section = vit_buffer_sections[b];
     cl_int e;
@@ -156,7 +156,8 @@ static vit_status make_buffer(vit_device *d, uint32_t b, const vit_pack *pack, c
         d->buffers[b] = clCreateBuffer(d->context, flags, (size_t)bytes, (void *)(uintptr_t)pack->section[section], &e);
         return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, vit_buffer_names[b], e);
     }
-    d->buffers[b] = clCreateBuffer(d->context, CL_MEM_READ_WRITE, (size_t)bytes, NULL, &e);
+    void *host = b == B_framebuffer && d->is_cpu ? framebuffer : NULL;
+    d->buffers[b] = clCreateBuffer(d->context, CL_MEM_READ_WRITE | (host ? CL_MEM_USE_HOST_PTR : 0), (size_t)bytes, host, &e);
     if (e != CL_SUCCESS)
         return vit_cl_failed(why, vit_buffer_names[b], e);
     static const uint32_t zero = 0;
@@ -191,7 +192,7 @@ static vit_status set_arguments(vit_device *d, const vit_limits *l, vit_text *wh
     return VIT_OK;
 }
 
-vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, vit_text *why) {
+vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, void *framebuffer, vit_text *why) {
     cl_int e;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
     clGetDeviceInfo(d->id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
@@ -204,7 +205,7 @@ vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits
         return vit_cl_failed(why, "clCreateCommandQueue", e);
     vit_status status = build(d, l, why);
     for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
-        status = make_buffer(d, b, pack, l, why);
+        status = make_buffer(d, b, pack, l, framebuffer, why);
     if (status == VIT_OK)
         status = upload_baked_photons(d, pack, why);
     if (status == VIT_OK)

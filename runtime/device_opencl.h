@@ -23,7 +23,8 @@ vit_status vit_cl_failed(vit_text *why, const char *call, cl_int error);
 vit_status vit_device_find(uint32_t index, cl_device_id *id, vit_text *why);
 /* Sets what in `l` is 0: lanes and group sizes that suit the device. Changes no bit of any frame. */
 void vit_device_suit(cl_device_id id, const vit_scene *s, vit_limits *l);
-vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, vit_text *why);
+/* framebuffer: host memory to render into if the device shares it, or NULL. */
+vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, void *framebuffer, vit_text *why);
 void vit_device_close(vit_device *d);
 
 #endif

@@ -74,12 +74,22 @@ static void collect_times(vit *v) {
     v->enqueued = 0;
 }
 
+/* The frame is in the caller's memory already: mapping waits for it and says that the host may look. */
+static cl_int show_in_place(vit *v, size_t bytes) {
+    cl_int e;
+    cl_mem b = v->device.buffers[B_framebuffer];
+    void *at = clEnqueueMapBuffer(v->device.queue, b, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &e);
+    return e == CL_SUCCESS ? clEnqueueUnmapMemObject(v->device.queue, b, at, 0, NULL, NULL) : e;
+}
+
 static vit_status read_frame(vit *v, void *framebuffer, size_t stride, vit_text *why) {
     const vit_scene *s = v->pack.scene;
     size_t row = (size_t)s->width * vit_format_bytes(v->limits.format), zero[3] = {0, 0, 0}, region[3] = {row, s->height, 1};
     cl_int e;
     if (!framebuffer)
         e = clFinish(v->device.queue);
+    else if (framebuffer == v->in_place && stride == row)
+        e = show_in_place(v, row * s->height);
     else if (stride == row)
         e = clEnqueueReadBuffer(v->device.queue, v->device.buffers[B_framebuffer], CL_TRUE, 0, row * s->height, framebuffer, 0, NULL, NULL);
     else

@@ -15,6 +15,8 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
         bad = "no such view";
     else if (info->max_nodes > 1u << 26 || info->max_list > 1u << 28)
         bad = "max_nodes is at most 2^26, max_list 2^28";
+    else if ((uintptr_t)info->framebuffer % 64 != 0)
+        bad = "the framebuffer must be aligned to 64 bytes";
     if (!bad)
         return VIT_OK;
     snprintf(why->text, sizeof why->text, "%s", bad);
@@ -91,7 +93,8 @@ vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     status = vit_device_find(info->device, &v->device.id, why);
     if (status == VIT_OK) {
         vit_device_suit(v->device.id, pack.scene, &v->limits);
-        status = vit_device_open(&v->device, &v->pack, &v->limits, v->profile, why);
+        status = vit_device_open(&v->device, &v->pack, &v->limits, v->profile, info->framebuffer, why);
+        v->in_place = v->device.is_cpu ? info->framebuffer : NULL;
     }
     if (status != VIT_OK) {
         vit_device_close(&v->device);

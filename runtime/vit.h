@@ -11,6 +11,7 @@ struct vit {
     vit_limits limits;
     vit_device device;
     int profile;
+    void *in_place;            /* the framebuffer that the device renders into; NULL: frames are read out */
     uint64_t frames;           /* rendered since vit_open */
     uint32_t enqueued;         /* commands of the last frame, with profile */
     uint32_t enqueued_pass[VIT_MAX_ENQUEUES];

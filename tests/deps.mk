@@ -2,6 +2,6 @@
 DEPS := make gcc libc6-dev ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libassimp-dev libembree-dev libstb-dev \
         libconfig-dev libpng-dev libxxhash-dev libcmocka-dev
 deps:
-	@missing=$$(for p in $(DEPS); do dpkg-query -W -f '$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || echo $$p; done); \
-	[ -z "$$missing" ] || { echo "make deps: installing" $$missing; S=; [ "$$(id -u)" = 0 ] || S=sudo; \
-	$$S env DEBIAN_FRONTEND=noninteractive sh -c "apt-get update -qq && apt-get install -y --no-install-recommends $$missing"; }
+	@missing=; for p in $(DEPS); do dpkg-query -W -f '$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
+	[ -z "$$missing" ] || { echo "make deps: installing$$missing"; S=; [ "$$(id -u)" = 0 ] || S=sudo; \
+	$$S env DEBIAN_FRONTEND=noninteractive sh -c "apt-get update -qq && apt-get install -y --no-install-recommends$$missing"; }

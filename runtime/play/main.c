@@ -124,6 +124,7 @@ static vit_status open_all(player *p, vit_text *why) {
     if (status == VIT_OK) {
         p->info.arena = p->arena;
         p->info.arena_size = p->need.host_bytes;
+        p->info.framebuffer = p->pixels;
         status = vit_open(&p->info, &p->v, why);
     }
     p->verdict = (verdict){.compare = o->verify, .print = o->hash};
