@@ -1,0 +1,181 @@
+/* The product's promise: the same pack gives the same bits, whatever plays it and however.
+ *
+ * Why this is hard: there is no reference picture to compare with, and a race may show only once in many frames. Strategy:
+ * the pack's golden hashes are one witness, a first plain run is the second; then everything that must not matter is varied,
+ * one thing at a time and some together: run, thread count, lanes, work-group size, PoCL's device and its way of making work-groups,
+ * order of frames. Each run must print exactly the lines of the first. Traces say the same of every buffer after every pass, so that
+ * a difference that a later pass hides shows too. Threads and devices are settings of a whole process, so the real player
+ * runs as a child. */
+#include "test_packs.h"
+
+static tool_run r; /* too large for a stack */
+
+/* Lines that the variants are held to. */
+static char expected[TOOL_TEXT];
+
+static void play(const char *environment, const char *pack, const char *options) {
+    tool(&r, "%s " TOOL_PLAY " %s --quiet %s", environment, pack, options);
+    tool_succeeds(&r);
+}
+
+/* Every environment and set of options gives the lines of the first; `what` goes with all. */
+typedef struct variant {
+    const char *environment, *options;
+} variant;
+
+static void assert_all_alike(const char *pack, const char *what, const variant *variants, size_t count) {
+    char options[256];
+    play("", pack, what);
+    memcpy(expected, r.out, sizeof expected);
+    assert_true(expected[0] != '\0');
+    for (size_t i = 0; i < count; i++) {
+        (void)snprintf(options, sizeof options, "%s %s", what, variants[i].options);
+        play(variants[i].environment, pack, options);
+        if (strcmp(r.out, expected) != 0) {
+            size_t at = 0;
+            while (r.out[at] == expected[at])
+                at++;
+            while (at > 0 && r.out[at - 1] != '\n')
+                at--;
+            fail_msg("%s\nis different from the plain run; the first line that differs:\n%.99s\nbut the plain run's\n%.99s", r.line,
+                     r.out + at, expected + at);
+        }
+    }
+}
+
+#define COUNT(a) (sizeof(a) / sizeof(a)[0])
+/* PoCL's ways of making work-groups, each with a cache of its own: what was compiled another way must not be taken. */
+#define METHOD(m) "POCL_WORK_GROUP_METHOD=" m " POCL_CACHE_DIR=" TEST_PACKS "/pocl-" m
+
+static const variant one_at_a_time[] = {
+    {"", ""},
+    {"POCL_MAX_PTHREAD_COUNT=1", ""},
+    {"POCL_MAX_PTHREAD_COUNT=2", ""},
+    {"", "--lanes 1"},
+    {"", "--lanes 8"},
+    {"", "--lanes 16"},
+    {"", "--group 1"},
+    {"", "--group 2"},
+    {"", "--group 32"},
+    {"", "--group 256"},
+    {"POCL_DEVICES=basic", ""},
+    {"POCL_DEVICES=pthread", ""},
+    {METHOD("auto"), ""},
+    {METHOD("loops"), ""},
+    {METHOD("loopvec"), ""},
+    {METHOD("loopvec"), "--lanes 1 --group 32"},
+};
+
+/* The same settings, several at once: fewer runs that still hold each kind of lanes, groups, threads and devices. */
+static const variant together[] = {
+    {"POCL_MAX_PTHREAD_COUNT=1", ""},
+    {"POCL_MAX_PTHREAD_COUNT=2", "--lanes 1 --group 256"},
+    {"POCL_DEVICES=pthread", "--lanes 8 --group 1"},
+    {"POCL_DEVICES=basic", "--lanes 16 --group 32"},
+};
+
+static void made_caches(void) {
+    test_packs_begin();
+    (void)mkdir(TEST_PACKS "/pocl-auto", 0777);
+    (void)mkdir(TEST_PACKS "/pocl-loops", 0777);
+    (void)mkdir(TEST_PACKS "/pocl-loopvec", 0777);
+}
+
+static void a_frame_hashes_the_same_however_it_is_played(void **state) {
+    (void)state;
+    made_caches();
+    assert_all_alike(test_pack("list"), "--verify --hash", one_at_a_time, COUNT(one_at_a_time));
+}
+
+#define ALIKE(name, pack)                                                                                                      \
+    static void name(void **state) {                                                                                           \
+        (void)state;                                                                                                           \
+        assert_all_alike(test_pack(pack), "--verify --hash", together, COUNT(together));                                       \
+    }
+ALIKE(buckets_hash_the_same, "buckets")
+ALIKE(raw_buckets_hash_the_same, "raw")
+ALIKE(flattened_photons_hash_the_same, "flattened")
+ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys")
+ALIKE(frames_without_photons_hash_the_same, "dark")
+ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room")
+ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh")
+ALIKE(a_large_scene_hashes_the_same, "atrium")
+
+static void a_frame_hashes_the_same_in_any_order(void **state) {
+    (void)state;
+    const char *pack = test_pack("list");
+    play("", pack, "--verify --hash");
+    memcpy(expected, r.out, sizeof expected);
+    const char *second = strchr(expected, '\n') + 1, *third = strchr(second, '\n') + 1;
+    play("", pack, "--verify --hash --frames 2");
+    assert_string_equal(r.out, third);
+    play("", pack, "--verify --hash --frames 1:3 --loop 2"); /* 1 2 1 2: each after the other */
+    char twice[256];
+    (void)snprintf(twice, sizeof twice, "%s%s", second, second);
+    assert_string_equal(r.out, twice);
+}
+
+static void frames_of_a_path_differ_from_each_other(void **state) {
+    (void)state; /* or hashes could be equal because nothing was drawn */
+    play("", test_pack("list"), "--hash");
+    const char *second = strchr(r.out, '\n') + 1, *third = strchr(second, '\n') + 1;
+    assert_int_not_equal(strncmp(r.out + 7, second + 7, 16), 0);
+    assert_int_not_equal(strncmp(second + 7, third + 7, 16), 0);
+}
+
+static void every_buffer_is_the_same_after_every_pass(void **state) {
+    (void)state;
+    static const char *const packs[] = {"list", "buckets", "raw", "normal-keys", "dark", "room", "room-buckets", "33x47"};
+    for (size_t i = 0; i < COUNT(packs); i++)
+        assert_all_alike(test_pack(packs[i]), "--trace", together, COUNT(together));
+}
+
+static void every_format_is_the_same_at_every_width(void **state) {
+    (void)state;
+    static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16 --group 2"}};
+    assert_all_alike(test_pack("list"), "--verify --hash --format rgb565", lanes, COUNT(lanes));
+    assert_all_alike(test_pack("list"), "--verify --hash --format rgba32f", lanes, COUNT(lanes));
+    assert_all_alike(test_pack("buckets"), "--verify --hash --format rgba32f", lanes, COUNT(lanes));
+}
+
+static void odd_sizes_are_the_same_in_every_format_at_every_width(void **state) {
+    (void)state;
+    static const char *const packs[] = {"1x1", "17x1", "33x47"};
+    static const char *const formats[] = {"--verify --hash", "--verify --hash --format rgb565", "--verify --hash --format rgba32f"};
+    static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16 --group 2"}};
+    for (size_t i = 0; i < COUNT(packs); i++)
+        for (size_t f = 0; f < COUNT(formats); f++)
+            assert_all_alike(test_pack(packs[i]), formats[f], lanes, COUNT(lanes));
+}
+
+static void every_view_is_the_same_at_every_width(void **state) {
+    (void)state;
+    static const char *const views[] = {"direct", "indirect", "clusters", "photons", "heat", "normals", "depth", "albedo"};
+    static const variant lanes[] = {{"POCL_MAX_PTHREAD_COUNT=1", "--lanes 1"}};
+    for (size_t i = 0; i < COUNT(views); i++) {
+        char what[64];
+        (void)snprintf(what, sizeof what, "--hash --view %s", views[i]);
+        assert_all_alike(test_pack("33x47"), what, lanes, COUNT(lanes));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_frame_hashes_the_same_however_it_is_played),
+        cmocka_unit_test(buckets_hash_the_same),
+        cmocka_unit_test(raw_buckets_hash_the_same),
+        cmocka_unit_test(flattened_photons_hash_the_same),
+        cmocka_unit_test(keys_with_normals_and_small_tiles_hash_the_same),
+        cmocka_unit_test(frames_without_photons_hash_the_same),
+        cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
+        cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),
+        cmocka_unit_test(a_large_scene_hashes_the_same),
+        cmocka_unit_test(a_frame_hashes_the_same_in_any_order),
+        cmocka_unit_test(frames_of_a_path_differ_from_each_other),
+        cmocka_unit_test(every_buffer_is_the_same_after_every_pass),
+        cmocka_unit_test(every_format_is_the_same_at_every_width),
+        cmocka_unit_test(odd_sizes_are_the_same_in_every_format_at_every_width),
+        cmocka_unit_test(every_view_is_the_same_at_every_width),
+    };
+    return cmocka_run_group_tests_name("same bits", tests, NULL, NULL);
+}

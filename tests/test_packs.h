@@ -1,0 +1,141 @@
+/* Small packs that golden tests play, baked by the real baker once and kept until the baker or its kernels are newer. */
+#ifndef VIT_TESTS_TEST_PACKS_H
+#define VIT_TESTS_TEST_PACKS_H
+
+#include "tool_run.h"
+
+#include <sys/stat.h>
+
+#define TEST_PACKS VIT_BUILD_DIR "/test-packs"
+#define TEST_SCENES VIT_BUILD_DIR "/scenes"
+
+/* A room of five sides for cameras and lights of our own: textures, one with holes, a lamp that glows. */
+static const char test_packs_room[] = "mtllib room.mtl\n"
+                                      "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nv -1 0 1\nv 1 0 1\nv 1 2 1\nv -1 2 1\n"
+                                      "v -0.8 0.2 -0.5\nv 0.8 0.2 -0.5\nv 0.8 1.8 -0.5\nv -0.8 1.8 -0.5\n"
+                                      "v -0.3 1.99 -0.3\nv 0.3 1.99 -0.3\nv 0.3 1.99 0.3\nv -0.3 1.99 0.3\n"
+                                      "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                                      "usemtl floor\nf 1/1 5/2 6/3 2/4\n"
+                                      "usemtl wall\nf 1/1 2/2 3/3 4/4\nf 1/1 4/2 8/3 5/4\nf 2/1 6/2 7/3 3/4\nf 4/1 3/2 7/3 8/4\n"
+                                      "usemtl leaves\nf 9/1 10/2 11/3 12/4\n"
+                                      "usemtl lamp\nf 13/1 14/2 15/3 16/4\n";
+static const char test_packs_materials[] = "newmtl floor\nKd 0.8 0.7 0.6\nmap_Kd ../scenes/wood.png\n"
+                                           "newmtl wall\nKd 0.7 0.7 0.7\n"
+                                           "newmtl leaves\nKd 0.9 0.9 0.9\nmap_Kd ../scenes/leaves.png\n"
+                                           "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 3 2\n";
+
+#define ROOM_VIEW(lights)                                                                                                      \
+    "output: { width = 96; height = 64; frames = 2; };\n"                                                                      \
+    "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
+    "lights = (" lights ");\n"                                                                                                 \
+    "quality: { photons = 2000; radius = 0.4; tile = 16; };\n"
+#define ROOM_STILL                                                                                                             \
+    "{ type = \"point\"; range = 9.0; keys = ( { position = [0.4, 1.7, 0.5]; power = [40.0, 50.0, 60.0]; } ); }"
+#define ROOM_MOVING                                                                                                            \
+    "{ type = \"spot\"; inner = 30.0; outer = 60.0;"                                                                           \
+    " keys = ( { position = [-0.5, 1.9, 0.3]; target = [0.0, 0.0, 0.0]; power = [60.0, 50.0, 40.0]; },"                        \
+    " { time = 0.1; position = [0.5, 1.9, 0.3]; } ); }"
+
+/* Files that packs are baked from, beside our demo scenes. */
+static const struct {
+    const char *name, *text;
+} test_packs_files[] = {
+    {"room.obj", test_packs_room},
+    {"room.mtl", test_packs_materials},
+    {"room.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW(ROOM_STILL ", " ROOM_MOVING)},
+    {"still.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW(ROOM_STILL)},
+    {"lamp.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW("")},
+};
+
+/* The packs: what is baked, and with which options. */
+static const struct {
+    const char *name, *input, *options;
+} test_packs[] = {
+#define CORNELL TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000 "
+    {"list", CORNELL "--all-formats"},
+    {"buckets", CORNELL "--all-formats --estimate buckets"},
+    {"raw", CORNELL "--estimate buckets --smoothing raw"},
+    {"flattened", CORNELL "--kernel flattened"},
+    {"normal-keys", CORNELL "--normal-keys 1 --tile 8"},
+    {"dark", CORNELL "--photons 0"},
+#undef CORNELL
+#define ODD TEST_SCENES "/cornell.cfg", "--photons 5000 --frames 2 --all-formats "
+    {"1x1", ODD "--size 1x1"},
+    {"17x1", ODD "--size 17x1"},
+    {"33x47", ODD "--size 33x47"},
+#undef ODD
+    {"room", TEST_PACKS "/room.cfg", ""},
+    {"room-buckets", TEST_PACKS "/room.cfg", "--estimate buckets"},
+    {"still", TEST_PACKS "/still.cfg", ""},
+    {"lamp", TEST_PACKS "/lamp.cfg", ""},
+    {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},
+    {"atrium", TEST_SCENES "/atrium.cfg", "--size 256x144 --frames 2"},
+    {"whole-tiles", TEST_SCENES "/cornell.cfg", "--size 160x128 --frames 4 --photons 5000"},
+};
+enum { TEST_PACK_COUNT = sizeof test_packs / sizeof test_packs[0] };
+
+static inline void test_packs_write(const char *path, const void *bytes, size_t size) {
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(bytes, 1, size, f), size);
+    assert_int_equal(fclose(f), 0);
+}
+
+static inline int test_packs_later(const struct stat *a, const struct stat *b) {
+    return a->st_mtim.tv_sec != b->st_mtim.tv_sec ? a->st_mtim.tv_sec > b->st_mtim.tv_sec : a->st_mtim.tv_nsec > b->st_mtim.tv_nsec;
+}
+
+/* Makes the folder and the scene files in it. */
+static inline void test_packs_begin(void) {
+    (void)mkdir(TEST_PACKS, 0777);
+    for (size_t i = 0; i < sizeof test_packs_files / sizeof test_packs_files[0]; i++) {
+        char path[256];
+        struct stat there;
+        (void)snprintf(path, sizeof path, TEST_PACKS "/%s", test_packs_files[i].name);
+        if (stat(path, &there) != 0 || (size_t)there.st_size != strlen(test_packs_files[i].text))
+            test_packs_write(path, test_packs_files[i].text, strlen(test_packs_files[i].text));
+    }
+}
+
+static inline size_t test_packs_find(const char *name) {
+    for (size_t i = 0; i < TEST_PACK_COUNT; i++)
+        if (strcmp(test_packs[i].name, name) == 0)
+            return i;
+    fail_msg("there is no test pack '%s'", name);
+    return 0;
+}
+
+/* The pack's path; baked if it is missing or older than the baker or its scene. */
+static inline const char *test_pack(const char *name) {
+    static char path[256];
+    struct stat pack, baker, input;
+    const size_t i = test_packs_find(name);
+    test_packs_begin();
+    (void)snprintf(path, sizeof path, TEST_PACKS "/%s.vit", name);
+    assert_int_equal(stat(TOOL_BAKE, &baker), 0);
+    assert_int_equal(stat(test_packs[i].input, &input), 0);
+    if (stat(path, &pack) == 0 && test_packs_later(&pack, &baker) && test_packs_later(&pack, &input))
+        return path;
+    static tool_run r;
+    tool(&r, TOOL_BAKE " %s -o %s --quiet %s", test_packs[i].input, path, test_packs[i].options);
+    tool_succeeds(&r);
+    return path;
+}
+
+/* A whole file in memory, aligned as vit_open_info.pack wants it; free() it. */
+static inline void *test_packs_load(const char *path, size_t *size) {
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, 0, SEEK_END), 0);
+    const long length = ftell(f);
+    assert_true(length > 0);
+    rewind(f);
+    void *bytes = aligned_alloc(64, ((size_t)length + 63) / 64 * 64);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, (size_t)length, f), length);
+    (void)fclose(f);
+    *size = (size_t)length;
+    return bytes;
+}
+
+#endif
