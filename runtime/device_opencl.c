@@ -192,11 +192,24 @@ static vit_status set_arguments(vit_device *d, const vit_limits *l, vit_text *wh
     return VIT_OK;
 }
 
+/* Same bits need the same rounding: see kernels/strict.clh. */
+static vit_status check_arithmetic(cl_device_id id, vit_text *why) {
+    static const cl_device_fp_config needed = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+    cl_device_fp_config config = 0;
+    clGetDeviceInfo(id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof config, &config, NULL);
+    if ((config & needed) == needed)
+        return VIT_OK;
+    snprintf(why->text, sizeof why->text, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, division, sqrt)");
+    return VIT_FAILED;
+}
+
 vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, void *framebuffer, vit_text *why) {
     cl_int e;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
     clGetDeviceInfo(d->id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
     d->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+    if (check_arithmetic(d->id, why) != VIT_OK)
+        return VIT_FAILED;
     d->context = clCreateContext(NULL, 1, &d->id, NULL, NULL, &e);
     if (e != CL_SUCCESS)
         return vit_cl_failed(why, "clCreateContext", e);
