@@ -177,6 +177,34 @@ static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why
     return status;
 }
 
+vit_status bounds_count_photons(bounds_input *in, double *stored, vit_text *why) {
+    const uint32_t probes = in->scene->frames < 5 ? in->scene->frames : 5;
+    vit_scene *s = in->scene, kept = *s;
+    run r;
+    s->slice_first = 0;
+    s->slice_count = 1;
+    s->max_nodes = 2;
+    s->max_list = 1;
+    *stored = 0;
+    if (in->progress)
+        in->progress(in->user, "photon radius", 0);
+    vit_status status = vit_pack_derive(s, why);
+    if (status == VIT_OK)
+        status = run_begin(&r, in->sections, in->device, VIT_FORMAT_XRGB8888, why);
+    if (status != VIT_OK)
+        return status;
+    for (uint32_t i = 0; i < probes && status == VIT_OK; i++) {
+        vit_statistics t;
+        status = frame(in, &r, i * (s->frames - 1) / (probes > 1 ? probes - 1 : 1), "photon radius", why);
+        if (status == VIT_OK)
+            status = vit_stats(r.v, &t, why);
+        *stored += status == VIT_OK ? (double)t.photons / probes : 0;
+    }
+    run_end(&r);
+    *s = kept;
+    return status;
+}
+
 vit_status bounds_measure(bounds_input *in, vit_text *why) {
     vit_scene *s = in->scene;
     vit_status status = VIT_OK;

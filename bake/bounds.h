@@ -18,6 +18,9 @@ typedef struct bounds_input {
     void *user;
 } bounds_input;
 
+/* Photons that a frame stores, baked ones included: the mean of a few frames over the path. Needs no bounds. */
+vit_status bounds_count_photons(bounds_input *in, double *stored, vit_text *why);
+
 /* First a run without light finds the depth slices in use; then runs with generous bounds, raised until nothing overflows, find
  * the largest hierarchy and lists, and the golden hashes and counts. */
 vit_status bounds_measure(bounds_input *in, vit_text *why);

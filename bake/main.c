@@ -126,6 +126,15 @@ static void measuring(void *user, const char *stage, double fraction) {
     progress_step(&b->progress, fraction);
 }
 
+/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. */
+static vit_status settle_radius(bake *b, bounds_input *in, vit_text *why) {
+    double stored;
+    vit_status status = bounds_count_photons(in, &stored, why);
+    if (status == VIT_OK && stored > 0)
+        plan_set_radius(&b->plan, plan_radius(&b->plan, stored), b->photons);
+    return status;
+}
+
 static vit_status measure(bake *b, vit_text *why) {
     b->gold = calloc((size_t)b->scene.frames, sizeof *b->gold);
     if (!b->gold) {
@@ -152,7 +161,11 @@ static vit_status measure(bake *b, vit_text *why) {
                        .stop = &stop,
                        .progress = measuring,
                        .user = b};
-    vit_status status = bounds_measure(&in, why);
+    vit_status status = VIT_OK;
+    if ((b->plan.scene.effects & VIT_EFFECT_BIT_PHOTONS) && !(b->scene.quality.radius > 0))
+        status = settle_radius(b, &in, why);
+    if (status == VIT_OK)
+        status = bounds_measure(&in, why);
     if (status == VIT_OK)
         status = pack_assemble(&sections, &b->pack, &b->pack_size, why);
     return status;
@@ -179,8 +192,8 @@ static vit_status explain(const bake *b, vit_text *why) {
     printf("  surface %.4g m2 (both sides), of which light can never reach %.4g m2\n", b->reach.area, b->reach.dark_front + b->reach.dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, b->atlas.width, b->atlas.height, 100 * b->atlas.occupancy);
     if (s->effects & VIT_EFFECT_BIT_PHOTONS)
-        printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m (auto would be %.3g m)\n", s->paths, s->baked, s->bounces,
-               (double)s->radius, b->plan.radius_auto);
+        printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
+               (double)s->radius);
     printf("\nbounds, the largest of any frame\n  hierarchy nodes %u, list entries %u, depth slices %u from %u on, key bits %u\n", s->max_nodes, s->max_list,
            s->slice_count, s->slice_first, s->key_bits);
     printf("\nbuffers\n");

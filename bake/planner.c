@@ -7,8 +7,8 @@
 #define PACKET 16u
 
 /* Photons that the disc of the radius holds on average if the radius is "auto". With fewer the estimate is mottled, with more it
- * leaks round corners; MEASURED: leaks dominate from about 1.5 m on in a building the size of Sponza. */
-#define AUTO_PHOTONS 12.0
+ * leaks round corners, which dominates from about 1.5 m on in a building the size of Sponza. */
+#define AUTO_PHOTONS 24.0
 
 static bool gives_photons(const scene *s, uint32_t light) {
     return s->automatic || s->lights[light].photons;
@@ -162,12 +162,27 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     if (r->dark_sides > 0)
         c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
     if (c->effects & VIT_EFFECT_BIT_PHOTONS) {
-        double stored = (double)s->quality.photons * (s->quality.bounces - 1);
-        out->radius_auto = sqrt(AUTO_PHOTONS * lit_area(r) / (3.14159265358979 * stored));
-        c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : out->radius_auto);
+        out->lit_area = lit_area(r);
+        double slots = (double)s->quality.photons * (s->quality.bounces - 1);
+        c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : plan_radius(out, slots));
         c->flatten = (float)s->quality.flatten;
     }
     return VIT_OK;
+}
+
+double plan_radius(const plan *p, double stored) {
+    return sqrt(AUTO_PHOTONS * p->lit_area / (3.14159265358979 * stored));
+}
+
+void plan_set_radius(plan *p, double radius, vit_photon *baked) {
+    const float r = (float)radius, r2 = r * r, inv = 1.0f / r2, scale = p->scene.radius * p->scene.radius * inv;
+    for (uint32_t i = 0; i < p->scene.baked; i++) {
+        for (int k = 0; k < 3; k++)
+            baked[i].power[k] *= scale;
+        baked[i].radius2 = r2;
+        baked[i].inv_radius2 = inv;
+    }
+    p->scene.radius = r;
 }
 
 void plan_free(plan *p) {

@@ -11,7 +11,7 @@ typedef struct plan {
     vit_scene scene;           /* META but for slices and bounds, which bounds.c measures */
     vit_material *materials;   /* model.material_count records */
     uint32_t *baked_paths;     /* a light: paths to bake (still lights), 0 for the others */
-    double radius_auto;        /* m; what "auto" gives, whatever the scene file says */
+    double lit_area;           /* m2 of sides that light can reach */
 } plan;
 
 /* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights in proportion to their mean
@@ -19,6 +19,11 @@ typedef struct plan {
 vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, plan *out,
                      vit_text *why);
 void plan_free(plan *p);
+
+/* What radius "auto" is, m, if a frame stores so many photons (> 0). Until that has been measured the plan assumes all slots. */
+double plan_radius(const plan *p, double stored);
+/* Changes the radius; the baked photons' powers follow. */
+void plan_set_radius(plan *p, double radius, vit_photon *baked);
 
 /* One line an effect: "called for" or not, and why. */
 typedef void plan_line_fn(void *user, const char *line);

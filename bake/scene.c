@@ -214,8 +214,10 @@ vit_status scene_for_mesh(const char *path, scene *out, vit_text *why) {
     const char *slash = strrchr(path, '/');
     (void)snprintf(out->name, sizeof out->name, "%.*s", SCENE_NAME - 1, slash ? slash + 1 : path);
     memcpy(out->meshes[0].file, out->path, sizeof out->path);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         out->meshes[0].transform[i * 5] = 1.0;
+        out->background[i] = 0.1; /* dark grey where the light shows white as 0.5: the unlit side has an outline */
+    }
     out->mesh_count = 1;
     out->automatic = true;
     return VIT_OK;

@@ -4,7 +4,7 @@
  *     vit_text why;
  *     vit_open_info info = {.pack = bytes, .pack_size = size};
  *     if (vit_require(&info, &need, &why) != VIT_OK) ...;     // checks the whole pack, allocates nothing
- *     info.arena = malloc(need.host_bytes);  info.arena_size = need.host_bytes;
+ *     info.arena = aligned_alloc(64, need.host_bytes);  info.arena_size = need.host_bytes;
  *     vit *v;
  *     if (vit_open(&info, &v, &why) != VIT_OK) ...;           // all buffers and kernels are made here
  *     for (uint32_t i = 0; i < need.frames; i++)

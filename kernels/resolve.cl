@@ -186,6 +186,7 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
 }
 #endif
 
+#if VIT_EFFECT_PHOTONS
 /* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest). */
 kernel void account(global uint *counters)
 {
@@ -195,3 +196,4 @@ kernel void account(global uint *counters)
             i == VIT_COUNTER_dropped_samples || i == VIT_COUNTER_dropped_entries ? add_sat(total, counters[i]) : max(total, counters[i]);
     }
 }
+#endif

@@ -1,5 +1,5 @@
-/* A scene made by a test, baked and played by the real programs, its indirect light read back as linear floats. All files lie in a
- * folder of the test's own. Programs run as from a shell, so what is tested is what a user gets. */
+/* A scene made by a test, baked and played by the real programs, its indirect light read back as linear floats. All files lie
+ * in a folder of the test's own. Programs run as from a shell, so what is tested is what a user gets. */
 #ifndef VIT_TESTS_SCENE_LAB_H
 #define VIT_TESTS_SCENE_LAB_H
 
@@ -54,7 +54,8 @@ static inline FILE *scene_lab_create(scene_lab *l, const char *name) {
     return f;
 }
 
-/* Runs a program of the build with the words of `line`, split at spaces; it must succeed. What it prints is shown only if not. */
+/* Runs a program of the build with the words of `line`, split at spaces; it must succeed. What it prints is shown only if not.
+ */
 static inline void scene_lab_run(scene_lab *l, const char *program, const char *line) {
     char path[256], copy[1024], *words[SCENE_LAB_WORDS + 2] = {path}, *rest = NULL;
     size_t count = 1;
@@ -88,13 +89,13 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
     fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
 }
 
-/* Bakes `scene`, a file of the folder or a whole path, with more options, and plays it: `pixels` takes the indirect radiance times
- * exposure of all frames, four floats a pixel. */
+/* Bakes `scene`, a file of the folder or a whole path, with more options, and plays it: `pixels` takes the indirect radiance
+ * times exposure of all frames, four floats a pixel. */
 static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
-    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s", scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene),
-                   pack, options);
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s",
+                   scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
     (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet", pack, raw);
     scene_lab_run(l, "vitrine-play", line);

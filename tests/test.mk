@@ -6,7 +6,13 @@ BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
 SCENES_MADE := $(B)/scenes/atrium.obj
 
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $^ -lcmocka $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+# Calls of our own objects that these tests want to see.
+$(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
+    vfprintf puts putchar fputs fwrite write
+$(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
+# How a program of the user's must be linked in this configuration.
+$(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)

@@ -21,8 +21,19 @@ static const char test_packs_room[] = "mtllib room.mtl\n"
                                       "usemtl lamp\nf 13/1 14/2 15/3 16/4\n";
 static const char test_packs_materials[] = "newmtl floor\nKd 0.8 0.7 0.6\nmap_Kd ../scenes/wood.png\n"
                                            "newmtl wall\nKd 0.7 0.7 0.7\n"
-                                           "newmtl leaves\nKd 0.9 0.9 0.9\nmap_Kd ../scenes/leaves.png\n"
+                                           "newmtl leaves\nKd 0.9 0.9 0.9\nmap_Kd holes.tga\n"
                                            "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 3 2\n";
+
+/* 8 x 8 texels of blue, green, red and alpha behind a TGA header: squares of 4 x 4 are opaque or holes in turn. */
+enum { HOLES_EDGE = 8, HOLES_HEADER = 18, HOLES_BYTES = HOLES_HEADER + 4 * HOLES_EDGE * HOLES_EDGE };
+static inline void test_packs_holes(unsigned char out[HOLES_BYTES]) {
+    static const unsigned char header[HOLES_HEADER] = {[2] = 2, [12] = HOLES_EDGE, [14] = HOLES_EDGE, [16] = 32, [17] = 8};
+    memcpy(out, header, sizeof header);
+    for (int i = 0; i < HOLES_EDGE * HOLES_EDGE; i++) {
+        const unsigned char texel[4] = {40, (unsigned char)(120 + i), 90, (i / 4 + i / 32) % 2 ? 255 : 0};
+        memcpy(out + HOLES_HEADER + 4 * i, texel, sizeof texel);
+    }
+}
 
 #define ROOM_VIEW(lights)                                                                                                      \
     "output: { width = 96; height = 64; frames = 2; };\n"                                                                      \
@@ -81,6 +92,15 @@ static inline void test_packs_write(const char *path, const void *bytes, size_t 
     assert_int_equal(fclose(f), 0);
 }
 
+/* Writes a scene's file where it is missing or of another size: its time says when it last changed. */
+static inline void test_packs_put(const char *name, const void *bytes, size_t size) {
+    char path[256];
+    struct stat there;
+    (void)snprintf(path, sizeof path, TEST_PACKS "/%s", name);
+    if (stat(path, &there) != 0 || (size_t)there.st_size != size)
+        test_packs_write(path, bytes, size);
+}
+
 static inline int test_packs_later(const struct stat *a, const struct stat *b) {
     return a->st_mtim.tv_sec != b->st_mtim.tv_sec ? a->st_mtim.tv_sec > b->st_mtim.tv_sec : a->st_mtim.tv_nsec > b->st_mtim.tv_nsec;
 }
@@ -88,13 +108,11 @@ static inline int test_packs_later(const struct stat *a, const struct stat *b) {
 /* Makes the folder and the scene files in it. */
 static inline void test_packs_begin(void) {
     (void)mkdir(TEST_PACKS, 0777);
-    for (size_t i = 0; i < sizeof test_packs_files / sizeof test_packs_files[0]; i++) {
-        char path[256];
-        struct stat there;
-        (void)snprintf(path, sizeof path, TEST_PACKS "/%s", test_packs_files[i].name);
-        if (stat(path, &there) != 0 || (size_t)there.st_size != strlen(test_packs_files[i].text))
-            test_packs_write(path, test_packs_files[i].text, strlen(test_packs_files[i].text));
-    }
+    for (size_t i = 0; i < sizeof test_packs_files / sizeof test_packs_files[0]; i++)
+        test_packs_put(test_packs_files[i].name, test_packs_files[i].text, strlen(test_packs_files[i].text));
+    unsigned char holes[HOLES_BYTES];
+    test_packs_holes(holes);
+    test_packs_put("holes.tga", holes, sizeof holes);
 }
 
 static inline size_t test_packs_find(const char *name) {

@@ -59,7 +59,8 @@ static void verify(contest *c) {
         for (uint32_t f = 0; f < p->need.frames; f++) {
             player_frame(p, f);
             if (e == LIST && c->radius == 0 && vit_hash(p->pixels, p->need.frame_bytes) != vit_golden(p->v, f))
-                bench_fail("%s %s: frame %u is not the pack's", c->setting, c->size, f);
+                bench_fail("%s %s: frame %u is not the pack's (are vitrine-bake and this program of one build?)", c->setting,
+                           c->size, f);
         }
         const vit_statistics s = player_stats(p);
         if (s.dropped_samples || s.dropped_entries)

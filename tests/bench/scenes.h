@@ -16,8 +16,7 @@ typedef struct bench_scene {
     const char *camera, *light;
 } bench_scene;
 
-/* One moving point light each. Frame 0 has the light where the scenes' README has it. Sponza's radius gives about the
- * photon-cluster pairs of the source at 1920x1080. */
+/* One moving point light each; in frame 0 Sponza's and Sibenik's are where the README of the test scenes has them. */
 static const bench_scene bench_scenes[] = {
     {"atrium", "atrium.obj", true, 0, "eye = [-9.6, 1.7, 1.7]; target = [2.0, 3.3, -0.9]; fov = 62.0;",
      "{ position = [-2.4, 2.8, -2.0]; power = [1100.0, 860.0, 570.0]; }, { time = 0.125; position = [2.6, 5.2, 1.6]; }"},

@@ -31,7 +31,8 @@ static const double box_lo[3] = {-1.2, -0.7, -1.5}, box_hi[3] = {1.0, 0.9, 1.3},
 static const double axis[VIEWS][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 static const double up[VIEWS][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 0}};
 
-/* moving: photons are traced while playing; else they are baked. */
+/* moving: photons are traced while playing; else they are baked. The light moves by a millimetre, so that the six views still
+ * see one and the same light. */
 static void write_scene(scene_lab *l, const char *name, const char *mesh, const double from[3], bool moving) {
     FILE *f = scene_lab_create(l, name);
     (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"%s\"; } );\n", SIDE,
@@ -45,7 +46,7 @@ static void write_scene(scene_lab *l, const char *name, const char *mesh, const 
                   "); };\nlights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }",
                   POWER, POWER, POWER);
     if (moving)
-        (void)fprintf(f, ", { time = 5.0; position = [0.4, -0.1, -0.5]; }");
+        (void)fprintf(f, ", { time = 5.0; position = [-0.299, 0.2, 0.4]; }");
     (void)fprintf(f, "); } );\nquality: { bounces = %d; tile = 8; };\n", BOUNCES);
     (void)fclose(f);
 }
@@ -101,7 +102,7 @@ static int set_up(void **state) {
     (void)fclose(f);
     static const double centre[3] = {0, 0, 0};
     write_box(&lab);
-    write_sphere(&lab, 48);
+    write_sphere(&lab, 32);
     write_scene(&lab, "box.cfg", "box.obj", eye, false);
     write_scene(&lab, "box_moving.cfg", "box.obj", eye, true);
     write_scene(&lab, "sphere.cfg", "sphere.obj", centre, false);
@@ -154,8 +155,8 @@ static double pixel_area(int i, int x, int y) {
     enum { PARTS = 8 };
     double sum = 0;
     for (int k = 0; k < PARTS * PARTS; k++)
-        sum += seen_area(i, (2.0 * (x * PARTS + k % PARTS) + 1) / (SIDE * PARTS) - 1, 1 - (2.0 * (y * PARTS + k / PARTS) + 1) / (SIDE * PARTS),
-                         SIDE * PARTS);
+        sum += seen_area(i, (2.0 * (x * PARTS + k % PARTS) + 1) / (SIDE * PARTS) - 1,
+                         1 - (2.0 * (y * PARTS + k / PARTS) + 1) / (SIDE * PARTS), SIDE * PARTS);
     return sum;
 }
 
@@ -220,22 +221,18 @@ static void the_bucket_estimate_keeps_all_light_in_a_box(void **state) {
 }
 
 static void the_list_estimate_is_right_everywhere_in_a_sphere(void **state) {
-    assert_true(sphere_deviation(*state, "--photons 262144 --radius 0.1") < LIST_WITHIN);
+    assert_true(sphere_deviation(*state, "--photons 131072 --radius 0.1") < LIST_WITHIN);
 }
 
 static void the_bucket_estimate_is_right_everywhere_in_a_sphere(void **state) {
-    assert_true(sphere_deviation(*state, "--photons 262144 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
+    assert_true(sphere_deviation(*state, "--photons 131072 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
 }
 
-static void other_settings_are_only_reported(void **state) {
-    static const char *const options[] = {"--estimate buckets --smoothing raw", "--kernel flattened",
-                                          "--kernel flattened --estimate buckets", "--estimate buckets --normal-keys 1"};
-    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
-        char line[160];
-        (void)snprintf(line, sizeof line, "--photons 65536 --radius 0.25 %s", options[i]);
-        (void)box_ratio(*state, "box.cfg", line);
-        (void)sphere_deviation(*state, line);
-    }
+/* The source's buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
+ * leaves out what lies round the corner. Neither is held to the truth. */
+static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state) {
+    (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --estimate buckets --smoothing raw");
+    (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --kernel flattened");
 }
 
 int main(void) {
@@ -245,7 +242,7 @@ int main(void) {
         cmocka_unit_test(the_bucket_estimate_keeps_all_light_in_a_box),
         cmocka_unit_test(the_list_estimate_is_right_everywhere_in_a_sphere),
         cmocka_unit_test(the_bucket_estimate_is_right_everywhere_in_a_sphere),
-        cmocka_unit_test(other_settings_are_only_reported),
+        cmocka_unit_test(raw_buckets_and_the_flattened_kernel_are_only_reported),
     };
     return cmocka_run_group_tests_name("furnace", tests, set_up, tear_down);
 }

@@ -1,0 +1,244 @@
+/* An effect that the scene does not call for costs nothing: no buffer, no pass, no kernel.
+ *
+ * Why this is hard: what is not there cannot be looked at, and a table that is asked about itself agrees with itself. Strategy: packs
+ * that differ in one effect are compared by what vit_require() says about them, against what that effect alone may add;
+ * and what vit_require() says is held against what the library really asks of OpenCL, since this program is linked with --wrap
+ * for the three calls that make and run things. Nothing is compiled either: the program's own list of kernels is read. */
+#include "open_pack.h"
+#include "vitrine_pack.h"
+
+#include <CL/cl.h>
+
+/* What the library asked of OpenCL. */
+static struct {
+    cl_program program;
+    uint32_t kernels, buffers, enqueued;
+    uint64_t bytes;
+    cl_kernel made[VIT_MAX_PASSES];
+    char names[VIT_MAX_PASSES][64];
+    uint32_t runs[VIT_MAX_PASSES]; /* of each kernel */
+} asked;
+
+cl_kernel __real_clCreateKernel(cl_program program, const char *name, cl_int *error);
+cl_kernel __wrap_clCreateKernel(cl_program program, const char *name, cl_int *error);
+cl_kernel __wrap_clCreateKernel(cl_program program, const char *name, cl_int *error) {
+    asked.program = program;
+    assert_in_range(asked.kernels, 0, VIT_MAX_PASSES - 1);
+    cl_kernel made = __real_clCreateKernel(program, name, error);
+    asked.made[asked.kernels] = made;
+    (void)snprintf(asked.names[asked.kernels++], sizeof asked.names[0], "%s", name);
+    return made;
+}
+
+cl_mem __real_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *error);
+cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *error);
+cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *error) {
+    asked.buffers++;
+    asked.bytes += size;
+    return __real_clCreateBuffer(context, flags, size, host, error);
+}
+
+cl_int __real_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
+                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event);
+cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
+                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event);
+cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
+                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event) {
+    asked.enqueued++;
+    for (uint32_t i = 0; i < asked.kernels; i++)
+        asked.runs[i] += asked.made[i] == kernel;
+    return __real_clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, waits, wait, event);
+}
+
+static vit_requirements requirements(const char *name) {
+    vit_requirements need;
+    vit_text why = {""};
+    size_t size;
+    void *bytes = test_packs_load(test_pack(name), &size);
+    if (vit_require(&(vit_open_info){.pack = bytes, .pack_size = size}, &need, &why) != VIT_OK)
+        fail_msg("%s: %s", name, why.text);
+    free(bytes);
+    return need;
+}
+
+static uint64_t bytes_of(const vit_requirements *need, const char *buffer) {
+    for (uint32_t i = 0; i < need->buffer_count; i++)
+        if (strcmp(need->buffers[i].name, buffer) == 0)
+            return need->buffers[i].bytes;
+    return 0;
+}
+
+static int has_pass(const vit_requirements *need, const char *pass) {
+    for (uint32_t i = 0; i < need->pass_count; i++)
+        if (strcmp(need->passes[i], pass) == 0)
+            return 1;
+    return 0;
+}
+
+/* Is `word` in the list, which has a space on each side of every word? */
+static int is_among(const char *list, const char *word) {
+    char spaced[80];
+    (void)snprintf(spaced, sizeof spaced, " %s ", word);
+    return strstr(list, spaced) != NULL;
+}
+
+/* The pack `with` has exactly these buffers and passes that `without` has not. */
+static void adds(const char *with, const char *without, const char *buffers, const char *passes) {
+    const vit_requirements a = requirements(with), b = requirements(without);
+    for (uint32_t i = 0; i < a.buffer_count; i++) {
+        const char *name = a.buffers[i].name;
+        assert_true(a.buffers[i].bytes > 0);
+        if ((bytes_of(&b, name) == 0) != is_among(buffers, name))
+            fail_msg("buffer %s: is in %s, and in %s it has %llu bytes", name, with, without, (unsigned long long)bytes_of(&b, name));
+    }
+    for (uint32_t i = 0; i < a.pass_count; i++)
+        if (has_pass(&b, a.passes[i]) == is_among(passes, a.passes[i]))
+            fail_msg("pass %s: is in %s, and in %s %d times", a.passes[i], with, without, has_pass(&b, a.passes[i]));
+}
+
+/* The same, and `without` has nothing of its own. */
+static void only_adds(const char *with, const char *without, const char *buffers, const char *passes) {
+    adds(with, without, buffers, passes);
+    adds(without, with, " ", " ");
+}
+
+static void without_photons_four_passes_and_no_photon_buffer_are_left(void **state) {
+    (void)state;
+    const vit_requirements need = requirements("dark");
+    static const char *const passes[] = {"visibility", "samples", "direct_light", "resolve"};
+    assert_int_equal(need.pass_count, 4);
+    for (uint32_t i = 0; i < 4; i++)
+        assert_string_equal(need.passes[i], passes[i]);
+    assert_int_equal(need.effects & (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS), 0);
+    for (uint32_t i = 0; i < need.buffer_count; i++)
+        assert_true(is_among(" always lights ", need.buffers[i].effect));
+}
+
+static void photons_add_their_own_buffers_and_leave_the_others_alone(void **state) {
+    (void)state;
+    const vit_requirements list = requirements("list"), dark = requirements("dark");
+    uint64_t shared = 0, added = 0;
+    for (uint32_t i = 0; i < list.buffer_count; i++) {
+        const uint64_t there = bytes_of(&dark, list.buffers[i].name);
+        if (there)
+            assert_int_equal(there, list.buffers[i].bytes);
+        *(there ? &shared : &added) += list.buffers[i].bytes;
+        assert_int_equal(there == 0, is_among(" photons traced-photons list ", list.buffers[i].effect));
+    }
+    assert_int_equal(shared, dark.device_bytes);
+    assert_int_equal(shared + added, list.device_bytes);
+}
+
+static void a_list_has_no_buckets_and_buckets_have_no_list_estimate(void **state) {
+    (void)state;
+    adds("buckets", "list", " buckets ", " splat_buckets bucket_clear estimate_buckets ");
+    adds("list", "buckets", " ", " estimate_list ");
+    assert_true(bytes_of(&(vit_requirements[]){requirements("buckets")}[0], "list") < bytes_of(&(vit_requirements[]){requirements("list")}[0], "list"));
+}
+
+static void raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone(void **state) {
+    (void)state;
+    const vit_requirements raw = requirements("raw"), smooth = requirements("buckets");
+    only_adds("raw", "buckets", " ", " ");
+    assert_int_equal(bytes_of(&raw, "buckets") * 8, bytes_of(&smooth, "buckets") * 54);
+}
+
+static void a_flattened_kernel_takes_no_buffer_and_no_pass(void **state) {
+    (void)state;
+    only_adds("flattened", "list", " ", " ");
+}
+
+static void still_lights_have_no_pass_that_traces_photons(void **state) {
+    (void)state;
+    only_adds("room", "still", " ", " photon_paths ");
+}
+
+static void a_scene_without_lights_has_neither_lights_nor_photons(void **state) {
+    (void)state;
+    const vit_requirements need = requirements("lamp");
+    assert_int_equal(bytes_of(&need, "lights"), 0);
+    assert_int_equal(need.pass_count, 3);
+    assert_false(has_pass(&need, "direct_light"));
+    assert_int_equal(need.effects & (VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_PHOTONS), 0);
+    assert_true(need.effects & VIT_EFFECT_BIT_EMISSION);
+}
+
+static void a_scene_without_textures_has_no_atlas(void **state) {
+    (void)state;
+    const vit_requirements plain = requirements("list"), textured = requirements("room");
+    static const char *const buffers[] = {"textures", "mips", "texels"};
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(bytes_of(&plain, buffers[i]), 0);
+        assert_true(bytes_of(&textured, buffers[i]) > 0);
+    }
+    assert_int_equal(plain.effects & (VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT | VIT_EFFECT_BIT_EMISSION), 0);
+    assert_true(textured.effects & VIT_EFFECT_BIT_CUTOUT);
+}
+
+/* All kernels that the program holds, with a space on each side of each. */
+static void names_of_program(char *text, size_t size) {
+    text[0] = ' ';
+    assert_int_equal(clGetProgramInfo(asked.program, CL_PROGRAM_KERNEL_NAMES, size - 2, text + 1, NULL), CL_SUCCESS);
+    (void)strcat(text, " ");
+    for (char *c = text; *c; c++)
+        *c = *c == ';' ? ' ' : *c;
+}
+
+static void open_and_play_one(const char *name, vit_view view) {
+    open_pack p;
+    char compiled[4096];
+    memset(&asked, 0, sizeof asked);
+    pack_open(&p, name, (vit_open_info){.view = view});
+    assert_int_equal(asked.buffers, p.need.buffer_count);
+    assert_int_equal(asked.bytes, p.need.device_bytes);
+    assert_int_equal(asked.kernels, p.need.pass_count);
+    names_of_program(compiled, sizeof compiled);
+    size_t words = 0;
+    for (const char *c = compiled + 1; *c; c++)
+        words += *c == ' ';
+    for (uint32_t i = 0; i < p.need.pass_count; i++) {
+        assert_string_equal(asked.names[i], p.need.passes[i]);
+        assert_true(is_among(compiled, p.need.passes[i]));
+    }
+    if (words != p.need.pass_count)
+        fail_msg("%s: %u passes, but these kernels were compiled:%s", name, p.need.pass_count, compiled);
+    pack_frame(&p, 0);
+    for (uint32_t i = 0; i < asked.kernels; i++)
+        assert_in_range(asked.runs[i], 0, VIT_MAX_LEVELS);
+    for (uint32_t i = 0, all = 0; i < asked.kernels; i++) {
+        all += asked.runs[i];
+        assert_true(i + 1 < asked.kernels || all == asked.enqueued);
+    }
+    assert_int_equal(asked.buffers, p.need.buffer_count); /* a frame makes nothing */
+    assert_int_equal(asked.kernels, p.need.pass_count);
+    pack_close(&p);
+}
+
+static void what_is_made_and_compiled_is_what_was_required_and_no_more(void **state) {
+    (void)state;
+    static const char *const packs[] = {"list", "buckets", "raw", "dark", "room", "still", "lamp"};
+    for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
+        open_and_play_one(packs[i], VIT_VIEW_final);
+}
+
+static void the_view_of_photons_alone_pays_for_its_dots(void **state) {
+    (void)state;
+    open_and_play_one("list", VIT_VIEW_photons);
+    assert_true(strcmp(asked.names[asked.kernels - 3], "photon_dots") == 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_photons_four_passes_and_no_photon_buffer_are_left),
+        cmocka_unit_test(photons_add_their_own_buffers_and_leave_the_others_alone),
+        cmocka_unit_test(a_list_has_no_buckets_and_buckets_have_no_list_estimate),
+        cmocka_unit_test(raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone),
+        cmocka_unit_test(a_flattened_kernel_takes_no_buffer_and_no_pass),
+        cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
+        cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
+        cmocka_unit_test(a_scene_without_textures_has_no_atlas),
+        cmocka_unit_test(what_is_made_and_compiled_is_what_was_required_and_no_more),
+        cmocka_unit_test(the_view_of_photons_alone_pays_for_its_dots),
+    };
+    return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
+}

@@ -1,0 +1,348 @@
+/* Both tools with real packs: exit codes, one-line errors, what is written and what is not left behind.
+ *
+ * Strategy: the real programs, as a shell would run them. An error is held to three promises: the exit code says the cause, stderr
+ * is one line that begins with the tool's name, stdout is empty. A tool that fails or is interrupted may leave no file in the folder that it
+ * was to write to. What the player refuses before it reads a pack is in tests/unit/test_player.c, scenes that the baker
+ * refuses are in tests/unit/test_scene.c; here only that the tools pass those errors on. */
+#include "pack_image.h"
+#include "test_packs.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <time.h>
+
+#define FOLDER TEST_PACKS "/tools"
+#define CAMERA "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; } ); };\n"
+
+static tool_run r;
+
+/* Removes what is in the folder and returns how many files that were; folders in it are left alone. */
+static int empty(const char *folder) {
+    int count = 0;
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;) {
+        char path[512];
+        (void)snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
+        count += unlink(path) == 0;
+    }
+    if (d)
+        (void)closedir(d);
+    return count;
+}
+
+static int set_up(void **state) {
+    (void)state;
+    test_packs_begin();
+    (void)mkdir(FOLDER, 0777);
+    (void)empty(FOLDER);
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    static const char *const folders[] = {FOLDER "/png", FOLDER "/ppm", FOLDER};
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        (void)empty(folders[i]);
+        (void)rmdir(folders[i]);
+    }
+    return 0;
+}
+
+#define OUT " -o " FOLDER "/out.vit"
+static void bake_refuses(const char *line, int code, const char *says) {
+    tool(&r, TOOL_BAKE " --quiet %s", line);
+    tool_refuses(&r, "vitrine-bake", code, says);
+    assert_int_equal(empty(FOLDER), 0);
+}
+
+static void the_baker_refuses_options_that_it_does_not_know(void **state) {
+    (void)state;
+    bake_refuses("scene.cfg --bogus" OUT, VIT_USAGE, "--bogus");
+    bake_refuses("scene.cfg -o", VIT_USAGE, "-o");
+    bake_refuses("scene.cfg", VIT_USAGE, "where to?");
+    bake_refuses("a.cfg b.cfg" OUT, VIT_USAGE, "one scene");
+    bake_refuses(OUT, VIT_USAGE, "which scene");
+}
+
+static void the_baker_refuses_values_out_of_range(void **state) {
+    (void)state;
+    bake_refuses("scene.cfg --size 640" OUT, VIT_USAGE, "WIDTHxHEIGHT");
+    bake_refuses("scene.cfg --size 0x10" OUT, VIT_USAGE, "WIDTHxHEIGHT");
+    bake_refuses("scene.cfg --frames 0" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --photons -1" OUT, VIT_USAGE, "--photons");
+    bake_refuses("scene.cfg --bounces 33" OUT, VIT_USAGE, "1 to 32");
+    bake_refuses("scene.cfg --radius -2" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --radius nan" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --estimate guess" OUT, VIT_USAGE, "list or buckets");
+    bake_refuses("scene.cfg --threads many" OUT, VIT_USAGE, "--threads");
+    bake_refuses(TEST_SCENES "/furnace.cfg --tile 24" OUT, VIT_USAGE, "--tile");
+}
+
+static void the_baker_names_a_file_that_is_missing(void **state) {
+    (void)state;
+    bake_refuses(FOLDER "/nowhere.cfg" OUT, VIT_BAD_INPUT, "nowhere.cfg");
+    bake_refuses(FOLDER "/nowhere.glb" OUT, VIT_BAD_INPUT, "nowhere.glb");
+    bake_refuses(FOLDER OUT, VIT_BAD_INPUT, FOLDER);
+}
+
+/* A scene file with this text; `says` holds the line's number where one is to blame. */
+static void scene_refused(const char *text, const char *says) {
+    test_packs_write(TEST_PACKS "/bad.cfg", text, strlen(text));
+    bake_refuses(TEST_PACKS "/bad.cfg" OUT, VIT_BAD_INPUT, says);
+    (void)unlink(TEST_PACKS "/bad.cfg");
+}
+
+static void the_baker_refuses_bad_scenes_with_file_and_line(void **state) {
+    (void)state;
+    scene_refused("", "meshes");
+    scene_refused("meshes = (\n", "bad.cfg:");
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "quality: { photons = -1; };\n", "bad.cfg:3: ");
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "speed = 3;\n", "bad.cfg:3: ");
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "\nlights = ( { type = \"sun\"; } );\n", "bad.cfg:4: light 1");
+    scene_refused("meshes = ( { file = \"nowhere.obj\"; } );\n" CAMERA, "nowhere.obj");
+    scene_refused("meshes = ( { file = \"room.mtl\"; } );\n" CAMERA, "room.mtl");
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\noutput: { width = 0; };\n",
+                  "bad.cfg:4: ");
+}
+
+static void a_missing_texture_is_an_error_only_if_strict(void **state) {
+    (void)state;
+    static const char text[] = "output: { width = 16; height = 16; frames = 1; };\nmeshes = ( { file = \"room.obj\"; } );\n" CAMERA
+                               "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\n";
+    test_packs_write(TEST_PACKS "/bad.cfg", text, sizeof text - 1);
+    bake_refuses("--strict " TEST_PACKS "/bad.cfg" OUT, VIT_BAD_INPUT, "nowhere.png");
+    tool(&r, TOOL_BAKE " --quiet " TEST_PACKS "/bad.cfg" OUT);
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.err, "warning: "));
+    assert_non_null(strstr(r.err, "nowhere.png"));
+    assert_int_equal(empty(FOLDER), 1);
+    (void)unlink(TEST_PACKS "/bad.cfg");
+}
+
+#define SMALL TEST_PACKS "/lamp.cfg --size 16x16 --frames 1"
+
+static void a_pack_that_cannot_be_written_is_a_failure_and_leaves_nothing(void **state) {
+    (void)state;
+    bake_refuses(SMALL " -o " FOLDER "/no/such/folder/out.vit", VIT_FAILED, FOLDER "/no/such/folder/out.vit");
+    bake_refuses(SMALL " -o " FOLDER, VIT_FAILED, FOLDER);
+    bake_refuses(SMALL " -o /dev/full", VIT_FAILED, "/dev/full");
+}
+
+static void a_bake_that_fails_leaves_the_old_pack_alone(void **state) {
+    (void)state;
+    test_packs_write(FOLDER "/out.vit", "old", 3);
+    tool(&r, TOOL_BAKE " --quiet " FOLDER "/nowhere.cfg" OUT);
+    assert_int_equal(r.code, VIT_BAD_INPUT);
+    size_t size;
+    char *old = test_packs_load(FOLDER "/out.vit", &size);
+    assert_int_equal(size, 3);
+    assert_memory_equal(old, "old", 3);
+    free(old);
+    assert_int_equal(empty(FOLDER), 1);
+}
+
+/* Waits until the tool has printed `text` to stderr, half a minute at most. */
+static void wait_for(const char *text) {
+    const struct timespec pause = {0, 10000000};
+    for (int i = 0; i < 3000; i++) {
+        tool_text(r.to_err, r.err);
+        if (strstr(r.err, text))
+            return;
+        (void)nanosleep(&pause, NULL);
+    }
+    fail_msg("%s\ndid not print '%s'", r.line, text);
+}
+
+static void an_interrupted_bake_exits_with_1_and_leaves_no_file(void **state) {
+    (void)state;
+    static const struct {
+        const char *done; /* a stage is told when it is done: the next one is running then */
+        int number;
+    } moments[] = {{"import ", SIGINT}, {"depth slices ", SIGINT}, {"depth slices ", SIGTERM}};
+    for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++) {
+        tool_line(&r, TOOL_BAKE " " TEST_SCENES "/cornell.cfg --size 64x48 --frames 300" OUT);
+        tool_begin(&r);
+        wait_for(moments[i].done);
+        assert_int_equal(kill(r.child, moments[i].number), 0);
+        tool_end(&r);
+        assert_int_equal(r.code, VIT_FAILED);
+        assert_int_equal(empty(FOLDER), 0);
+    }
+}
+
+static void explain_writes_no_file_and_names_every_buffer(void **state) {
+    (void)state;
+    tool(&r, TOOL_BAKE " --quiet --explain " SMALL);
+    tool_succeeds(&r);
+    assert_int_equal(empty(FOLDER), 0);
+    static const char *const words[] = {"effects\n", "buffers\n", "framebuffer", "device bytes", "emission"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        assert_non_null(strstr(r.out, words[i]));
+}
+
+/* Changes frame `index`'s golden hash of XRGB8888 and makes all of the pack's hashes right again. */
+static void alter_golden(const char *from, const char *to, uint32_t index) {
+    image im = {0};
+    im.bytes = test_packs_load(from, &im.size);
+    im.header = im.bytes;
+    im.table = (vit_pack_entry *)(im.header + 1);
+    im.golds = section(&im, VIT_SECTION_GOLD);
+    im.golds[index].xrgb8888[0] ^= 1;
+    forge(&im);
+    test_packs_write(to, im.bytes, im.size);
+    free(im.bytes);
+}
+
+static void verify_tells_the_first_frame_that_differs(void **state) {
+    (void)state;
+    alter_golden(test_pack("list"), FOLDER "/altered.vit", 1);
+    tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/altered.vit");
+    tool_refuses(&r, "vitrine-play", VIT_MISMATCH, "frame 1: expected ");
+    assert_non_null(strstr(r.err, "1 of 3 frames differ"));
+    tool(&r, TOOL_PLAY " --quiet --verify --frames 2 " FOLDER "/altered.vit");
+    tool_succeeds(&r);
+    tool(&r, TOOL_PLAY " --quiet " FOLDER "/altered.vit"); /* who does not ask is not told */
+    tool_succeeds(&r);
+    (void)empty(FOLDER);
+}
+
+static void verify_of_a_format_without_golden_hashes_is_a_mismatch(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " --quiet --verify --format rgb565 %s", test_pack("dark"));
+    tool_refuses(&r, "vitrine-play", VIT_MISMATCH, "no golden hashes");
+}
+
+static void a_pack_cut_short_or_flipped_is_bad_input(void **state) {
+    (void)state;
+    size_t size;
+    char *bytes = test_packs_load(test_pack("lamp"), &size);
+    test_packs_write(FOLDER "/bad.vit", bytes, size - 1);
+    tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/bad.vit");
+    tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
+    bytes[size / 2] ^= 1;
+    test_packs_write(FOLDER "/bad.vit", bytes, size);
+    tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/bad.vit");
+    tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
+    free(bytes);
+    (void)empty(FOLDER);
+}
+
+static void each_view_shows_something_else(void **state) {
+    (void)state;
+    static const char *const views[] = {
+#define X(name, meaning) #name,
+        VIT_VIEWS(X)
+#undef X
+    };
+    enum { COUNT = sizeof views / sizeof views[0] };
+    char hashes[COUNT][64];
+    for (size_t i = 0; i < COUNT; i++) {
+        tool(&r, TOOL_PLAY " --quiet --hash --frames 0 --view %s %s", views[i], test_pack("33x47"));
+        tool_succeeds(&r);
+        assert_int_equal(strlen(r.out), 24); /* "000000 0123456789abcdef\n" */
+        (void)snprintf(hashes[i], sizeof hashes[0], "%.40s", r.out);
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(hashes[i], hashes[k]) == 0)
+                fail_msg("the views %s and %s are the same picture", views[i], views[k]);
+    }
+}
+
+/* Bytes of a file; -1: it is not there. */
+static long bytes_of(const char *path) {
+    struct stat s;
+    return stat(path, &s) == 0 ? (long)s.st_size : -1;
+}
+
+static void frames_in_files_have_the_right_sizes(void **state) {
+    (void)state;
+    const char *pack = test_pack("33x47");
+    const long pixels = 33 * 47;
+    char header[160];
+    tool(&r, TOOL_PLAY " --quiet %s --out raw:" FOLDER "/a.raw", pack);
+    tool_succeeds(&r);
+    assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 4 * pixels);
+    tool(&r, TOOL_PLAY " --quiet %s --format rgb565 --out raw:" FOLDER "/a.raw", pack);
+    tool_succeeds(&r);
+    assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 2 * pixels);
+    tool(&r, TOOL_PLAY " --quiet %s --format rgba32f --out raw:" FOLDER "/a.raw", pack);
+    tool_succeeds(&r);
+    assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 16 * pixels);
+    tool(&r, TOOL_PLAY " --quiet %s --out y4m:" FOLDER "/a.y4m", pack);
+    tool_succeeds(&r);
+    FILE *f = fopen(FOLDER "/a.y4m", "rb");
+    assert_non_null(f);
+    assert_non_null(fgets(header, sizeof header, f));
+    (void)fclose(f);
+    assert_int_equal(strncmp(header, "YUV4MPEG2 W33 H47 F24:1 ", 24), 0);
+    assert_int_equal(bytes_of(FOLDER "/a.y4m"), (long)strlen(header) + 2 * (6 + 3 * pixels));
+    tool(&r, TOOL_PLAY " --quiet %s --out ppm:" FOLDER "/ppm", pack);
+    tool_succeeds(&r);
+    assert_int_equal(bytes_of(FOLDER "/ppm/frame_00000.ppm"), 13 + 3 * pixels); /* "P6\n33 47\n255\n" */
+    assert_int_equal(bytes_of(FOLDER "/ppm/frame_00001.ppm"), 13 + 3 * pixels);
+    assert_int_equal(bytes_of(FOLDER "/ppm/frame_00002.ppm"), -1);
+}
+
+static void a_png_says_its_size(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " --quiet %s --frames 1 --out png:" FOLDER "/png", test_pack("33x47"));
+    tool_succeeds(&r);
+    size_t size;
+    unsigned char *png = test_packs_load(FOLDER "/png/frame_00001.png", &size);
+    static const unsigned char head[] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 0, 0, 33, 0, 0, 0, 47, 8, 2};
+    assert_true(size > 200);
+    assert_memory_equal(png, head, sizeof head);
+    assert_memory_equal(png + size - 8, "IEND", 4);
+    free(png);
+    assert_int_equal(bytes_of(FOLDER "/png/frame_00000.png"), -1);
+}
+
+static void a_raw_frame_is_what_is_hashed(void **state) {
+    (void)state;
+    char want[64];
+    size_t size;
+    tool(&r, TOOL_PLAY " --quiet --hash %s --frames 1 --out raw:" FOLDER "/a.raw", test_pack("33x47"));
+    tool_succeeds(&r);
+    void *frame = test_packs_load(FOLDER "/a.raw", &size);
+    (void)snprintf(want, sizeof want, "000001 %016llx\n", (unsigned long long)vit_hash(frame, size));
+    assert_string_equal(r.out, want);
+    free(frame);
+    (void)empty(FOLDER);
+}
+
+static void frames_beyond_the_path_are_refused_with_what_there_is(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " --quiet %s --frames 2:9", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "frames 0 to 1");
+}
+
+static void a_device_that_is_not_there_is_a_failure(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " --quiet %s --device 900", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_FAILED, "no device 900");
+    bake_refuses(SMALL " --device 900" OUT, VIT_FAILED, "no device 900");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_baker_refuses_options_that_it_does_not_know),
+        cmocka_unit_test(the_baker_refuses_values_out_of_range),
+        cmocka_unit_test(the_baker_names_a_file_that_is_missing),
+        cmocka_unit_test(the_baker_refuses_bad_scenes_with_file_and_line),
+        cmocka_unit_test(a_missing_texture_is_an_error_only_if_strict),
+        cmocka_unit_test(a_pack_that_cannot_be_written_is_a_failure_and_leaves_nothing),
+        cmocka_unit_test(a_bake_that_fails_leaves_the_old_pack_alone),
+        cmocka_unit_test(an_interrupted_bake_exits_with_1_and_leaves_no_file),
+        cmocka_unit_test(explain_writes_no_file_and_names_every_buffer),
+        cmocka_unit_test(verify_tells_the_first_frame_that_differs),
+        cmocka_unit_test(verify_of_a_format_without_golden_hashes_is_a_mismatch),
+        cmocka_unit_test(a_pack_cut_short_or_flipped_is_bad_input),
+        cmocka_unit_test(each_view_shows_something_else),
+        cmocka_unit_test(frames_in_files_have_the_right_sizes),
+        cmocka_unit_test(a_png_says_its_size),
+        cmocka_unit_test(a_raw_frame_is_what_is_hashed),
+        cmocka_unit_test(frames_beyond_the_path_are_refused_with_what_there_is),
+        cmocka_unit_test(a_device_that_is_not_there_is_a_failure),
+    };
+    return cmocka_run_group_tests_name("tools", tests, set_up, tear_down);
+}
