@@ -51,10 +51,6 @@ static vit_status run_begin(run *r, const pack_sections *sections, uint32_t devi
 }
 
 static vit_status frame(bounds_input *in, run *r, uint32_t index, const char *stage, vit_text *why) {
-    if (in->stop && *in->stop) {
-        snprintf(why->text, sizeof why->text, "interrupted");
-        return VIT_FAILED;
-    }
     vit_status status = vit_frame(r->v, index, r->frame, r->stride, why);
     if (in->progress)
         in->progress(in->user, stage, (index + 1.0) / in->scene->frames);

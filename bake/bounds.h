@@ -13,7 +13,6 @@ typedef struct bounds_input {
     vit_gold *gold;            /* scene->frames records, filled in */
     uint32_t device;
     int all_formats;           /* golden hashes of RGB565 and RGBA32F too: two more runs */
-    const volatile int *stop;  /* not 0: give up with VIT_FAILED, "interrupted" */
     bounds_progress_fn *progress;
     void *user;
 } bounds_input;

@@ -60,8 +60,12 @@ vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vi
     vit_status status = lay_out(in->data[VIT_SECTION_META], table, &total, why);
     if (status != VIT_OK)
         return status;
-    unsigned char *image = calloc(1, (size_t)total); /* zero: the gaps are part of the format */
-    if (!image)
+    /* On a page, so that records lie as they will in a mapped file; zero: the gaps are part of the format. */
+    const size_t room = ((size_t)total + VIT_PACK_ALIGN - 1) / VIT_PACK_ALIGN * VIT_PACK_ALIGN;
+    unsigned char *image = aligned_alloc(VIT_PACK_ALIGN, room);
+    if (image)
+        memset(image, 0, room);
+    else
         return fail(VIT_FAILED, why, "pack: out of memory for %llu bytes", (unsigned long long)total);
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
         if (table[i].size > 0 && !in->data[i]) {

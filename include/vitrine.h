@@ -77,7 +77,7 @@ typedef enum vit_view {
 
 /* What to open and how; zero means the default for every field but pack and arena. */
 typedef struct vit_open_info {
-    const void *pack;          /* the whole file, 8-byte aligned; must outlive the vit */
+    const void *pack;          /* the whole file, 8-byte aligned (a page, as mmap gives, is faster); must outlive the vit */
     size_t pack_size;          /* bytes */
     void *arena;               /* host memory for the library, 64-byte aligned, at least vit_requirements.host_bytes */
     size_t arena_size;         /* bytes */

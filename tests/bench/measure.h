@@ -149,7 +149,7 @@ static inline void csv_row(csv *c, const char *scene, const char *size, const ch
     const char *const texts[] = {c->date, c->cpu, c->device.text, scene, size, what};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         csv_field(c->file, texts[i]);
-    fprintf(c->file, "%.6g,%.4g,%s,%d\n", series_median(s), series_mad(s), unit, s->count);
+    fprintf(c->file, "%.9g,%.4g,%s,%d\n", series_median(s), series_mad(s), unit, s->count);
     fflush(c->file);
 }
 
