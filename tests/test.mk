@@ -19,9 +19,14 @@ $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
 
-.PHONY: run-tests run-bench
+.PHONY: run-tests run-bench run-sanitized
 test: deps
+	@$(MAKE) --no-print-directory config=sanitize run-sanitized
 	@$(MAKE) --no-print-directory run-tests
+# Bad input under the address and undefined behaviour sanitizers.
+SANITIZED := $(addprefix $(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
+run-sanitized: $(SANITIZED)
+	@for t in $(SANITIZED); do echo "== $$t"; $$t || exit 1; done
 run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(TEST_PROGRAMS)
 	@for t in $(TEST_PROGRAMS); do echo "== $$t"; $$t || exit 1; done
 
