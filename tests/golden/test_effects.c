@@ -110,8 +110,11 @@ static void without_photons_four_passes_and_no_photon_buffer_are_left(void **sta
     for (uint32_t i = 0; i < 4; i++)
         assert_string_equal(need.passes[i], passes[i]);
     assert_int_equal(need.effects & (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS), 0);
+    static const char buffers[] = " scene cameras lights triangles attributes bvh materials hit_triangle hit_distance position "
+                                  "normal albedo direct counters framebuffer ";
     for (uint32_t i = 0; i < need.buffer_count; i++)
-        assert_true(is_among(" always lights ", need.buffers[i].effect));
+        if (!is_among(buffers, need.buffers[i].name) || !is_among(" always lights ", need.buffers[i].effect))
+            fail_msg("buffer %s, for %s", need.buffers[i].name, need.buffers[i].effect);
 }
 
 static void photons_add_their_own_buffers_and_leave_the_others_alone(void **state) {
