@@ -167,6 +167,7 @@ static void an_interrupted_bake_exits_with_1_and_leaves_no_file(void **state) {
         assert_int_equal(kill(r.child, moments[i].number), 0);
         tool_end(&r);
         assert_int_equal(r.code, VIT_FAILED);
+        assert_non_null(strstr(r.err, "interrupted"));
         assert_int_equal(empty(FOLDER), 0);
     }
 }
