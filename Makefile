@@ -37,6 +37,7 @@ LIBS_RUNTIME := -lOpenCL
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
+.DELETE_ON_ERROR:
 .PHONY: all tools help deps demo run-demo test bench clean install format
 all: deps
 	@$(MAKE) --no-print-directory tools
@@ -46,7 +47,7 @@ include tests/deps.mk
 
 $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 	@mkdir -p $(@D)
-	@{ echo '/* Made from kernels/ by the Makefile. */'; echo '#include "kernel_sources.h"'; \
+	@set -e; { echo '/* Made from kernels/ by the Makefile. */'; echo '#include "kernel_sources.h"'; \
 	   echo 'const char *const vit_kernel_sources[] = {'; \
 	   for f in $(KERNELS); do printf '"#line 1 \\"%s\\"\\n"\n' $$f; sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' kernels/$$f; echo ','; done; \
 	   echo '};'; echo 'const unsigned vit_kernel_source_count = sizeof vit_kernel_sources / sizeof vit_kernel_sources[0];'; } > $@

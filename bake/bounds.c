@@ -68,6 +68,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     s.effects |= VIT_EFFECT_BIT_LIST;
     s.paths = 0;
     s.baked = 1;
+    s.tile = 64; /* slices do not depend on it, and keys stay short */
     s.slice_first = 0;
     s.slice_count = 4096;
     s.max_nodes = 2;

@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "reach.h"
 #include "tracks.h"
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +36,7 @@ typedef struct bake {
 
 /* Everything that is unfinished is in memory or under a temporary name, so that the end may come at once. */
 static void on_signal(int number) {
-    static const char line[] = "\nvitrine-bake: interrupted, nothing written\n";
+    static const char line[] = "\nvitrine-bake: interrupted\n";
     (void)number;
     pack_abandon();
     if (write(STDERR_FILENO, line, sizeof line - 1) < 0)
@@ -190,7 +191,7 @@ static vit_status explain(const bake *b, vit_text *why) {
     printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n", s->triangles,
            (unsigned long long)b->model.degenerate, (unsigned long long)b->model.not_finite, (unsigned long long)b->model.not_triangles, s->nodes,
            b->bvh.depth);
-    printf("  surface %.4g m2 (both sides), of which light can never reach %.4g m2\n", b->reach.area, b->reach.dark_front + b->reach.dark_back);
+    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->reach.area, b->reach.dark_front + b->reach.dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, b->atlas.width, b->atlas.height, 100 * b->atlas.occupancy);
     if (s->effects & VIT_EFFECT_BIT_PHOTONS)
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
@@ -204,8 +205,21 @@ static vit_status explain(const bake *b, vit_text *why) {
     return VIT_OK;
 }
 
+/* Found out before the work rather than after it. */
+static vit_status check_output(const char *path, vit_text *why) {
+    char folder[SCENE_PATH];
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+    if (!path || access(folder, W_OK | X_OK) == 0)
+        return VIT_OK;
+    snprintf(why->text, sizeof why->text, "%.400s: cannot write into its folder: %s", path, strerror(errno));
+    return VIT_FAILED;
+}
+
 static vit_status run(bake *b, vit_text *why) {
-    vit_status status = import(b, why);
+    vit_status status = check_output(b->options.output, why);
+    if (status == VIT_OK)
+        status = import(b, why);
     if (status == VIT_OK)
         status = build(b, why);
     if (status == VIT_OK)
@@ -254,6 +268,10 @@ int main(int argc, char **argv) {
         signal(SIGTERM, on_signal);
         b.progress = progress_make(b.options.quiet);
         status = run(&b, &why);
+    }
+    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout))) {
+        snprintf(why.text, sizeof why.text, "standard output: write failed");
+        status = VIT_FAILED;
     }
     if (status != VIT_OK)
         fprintf(stderr, "vitrine-bake: %s\n", why.text);

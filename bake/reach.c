@@ -7,7 +7,7 @@
  *
  * Sums over threads are integers, everything else is computed by one thread in a fixed order: the result does not depend on
  * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray.
- * Irradiance is in units of the lights' mean total power a m2. */
+ * Every light that shines at all gives the same power; all together 1, and irradiance is in that unit a m2. */
 #include "reach.h"
 #include "reach_rays.h"
 #include <math.h>
@@ -34,7 +34,7 @@ typedef struct search {
     uint32_t frames, sides;
     ray_scene rays;
     double power;        /* of all lights, mean over the frames, W */
-    atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of `power` */
+    atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of all lights' power */
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
     float threshold;
@@ -102,7 +102,7 @@ static void shoot_from_light(search *s, uint32_t ray) {
     const vec origin = {l->position[0], l->position[1], l->position[2]};
     const vec direction = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
     const uint32_t side = ray_scene_cast(&s->rays, origin, direction, INFINITY);
-    const double share = power / s->power * s->t->light_count / LIGHT_RAYS;
+    const double share = 1.0 / LIGHT_RAYS; /* every light counts alike: a weak one may be all that a room has */
     if (side < s->sides)
         atomic_fetch_add_explicit(s->flux + side, (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
     atomic_fetch_add_explicit(&s->shot, 1, memory_order_relaxed);
@@ -165,19 +165,22 @@ static float ask_light(const search *s, uint32_t side, uint32_t i) {
     const bool in_cone = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
     if (!in_cone || !(cosine > 0.0f) || ray_scene_cast(&s->rays, o, unit, d) != RAY_NOTHING)
         return 0.0f;
-    return (float)(mean_intensity(l) / s->power) * cosine / (d * d) * (float)s->t->light_count;
+    return mean_intensity(l) > 0.0 ? cosine / (d * d) / (float)solid_angle(l) : 0.0f;
 }
 
-/* Step 4. The estimates add up as they come; what is enough ends the search. */
+/* Step 4. A side that any light shines on is lit, however weakly; the threshold is for reflected light alone. What is enough ends
+ * the search. */
 static void ask_again(search *s, uint32_t side) {
-    const float found = s->irradiance[side];
-    float direct = 0.0f, reflected = 0.0f;
+    float found = s->irradiance[side], reflected = 0.0f;
     uint32_t rays = 0;
-    for (uint32_t i = 0; i < ASK_LIGHTS && found + direct < s->threshold; i++, rays++)
-        direct += ask_light(s, side, i) / (float)ASK_LIGHTS;
-    for (uint32_t i = 0; i < ASK_RAYS && fmaxf(found, reflected) + direct < s->threshold; i++, rays++)
+    if (s->direct[side] > 0.0f)
+        found = fmaxf(found, s->threshold);
+    for (uint32_t i = 0; i < ASK_LIGHTS && found < s->threshold; i++, rays++)
+        if (ask_light(s, side, i) > 0.0f)
+            found = s->threshold;
+    for (uint32_t i = 0; i < ASK_RAYS && fmaxf(found, reflected) < s->threshold; i++, rays++)
         reflected += REACH_ALBEDO / (float)ASK_RAYS * irradiance_of(s, look(s, side, GATHER_RAYS + i));
-    s->next_irradiance[side] = fmaxf(found, reflected) + direct;
+    s->next_irradiance[side] = fmaxf(found, reflected);
     atomic_fetch_add_explicit(&s->shot, rays, memory_order_relaxed);
 }
 

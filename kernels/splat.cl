@@ -241,6 +241,8 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
     SPLAT_END
     if (pairs > 0)
         atomic_add(counters + VIT_COUNTER_pairs, pairs);
+    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
+        atomic_max(counters + VIT_COUNTER_largest, list_count[child_first + c]);
 }
 #endif
 #endif

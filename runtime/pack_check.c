@@ -38,6 +38,8 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "a spot light without the effect SPOT";
     if (l->inv_range2 > 0.0f && !(s->effects & VIT_EFFECT_BIT_RANGE))
         return "a range without the effect RANGE";
+    if (l->falloff == VIT_FALLOFF_WINDOW && !(l->inv_range2 > 0.0f))
+        return "falloff WINDOW without a range";
     if ((uint64_t)l->path_first + l->path_count > s->paths)
         return "paths run beyond the scene's";
     if (l->path_first % 16 != 0 || l->path_count % 16 != 0) /* a packet of paths has one light, at any number of lanes */

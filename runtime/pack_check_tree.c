@@ -12,6 +12,8 @@ vit_status pack_check_triangles(const vit_scene *s, const vit_triangle *triangle
         const float n[3] = {t->nx, t->ny, t->nz};
         if (!all_finite(t->v0, 3) || !all_finite(t->v1, 3) || !all_finite(t->v2, 3))
             return pack_refuse(why, "section GEOM: triangle %u: vertex is not finite", i);
+        if (!all_in_range(t->v0, 3, -1e9f, 1e9f) || !all_in_range(t->v1, 3, -1e9f, 1e9f) || !all_in_range(t->v2, 3, -1e9f, 1e9f))
+            return pack_refuse(why, "section GEOM: triangle %u: vertex beyond 1e9 m", i); /* products of edges stay finite */
         if (!all_finite(n, 3))
             return pack_refuse(why, "section GEOM: triangle %u: normal is not finite", i);
         if (all_in_range(n, 3, 0.0f, 0.0f))

@@ -50,7 +50,7 @@ const vit_pass vit_passes[] = {
      ON(PHOTONS),
      GROUP_PER_LEVEL_NODE,
      LISTED,
-     W(list_count) | W(chunk_count),
+     W(list_count),
      {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list,
       B_chunk_count, B_counters, V_END}},
     {"splat_place",

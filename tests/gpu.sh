@@ -4,6 +4,7 @@
 # Needs no compiler, Embree or PoCL there. VIT_LIBS: a folder with libOpenCL.so.1 and libpng16.so.16, if the machine has none.
 # Exit: 0 all equal, 1 no GPU, 4 a hash differs. The last line counts passed and failed comparisons.
 set -u
+[ $# -ge 2 ] || { echo "usage: tests/gpu.sh PLAYER PACK..."; exit 2; }
 player=$1; shift
 [ -z "${VIT_LIBS:-}" ] || export LD_LIBRARY_PATH="$VIT_LIBS${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 # The loader finds drivers through .icd files; make one where NVIDIA's driver came without.
@@ -12,6 +13,7 @@ if ! grep -qi nvidia /etc/OpenCL/vendors/*.icd 2>/dev/null && [ -z "${OCL_ICD_VE
     cp /etc/OpenCL/vendors/*.icd "$OCL_ICD_VENDORS" 2>/dev/null
     echo libnvidia-opencl.so.1 > "$OCL_ICD_VENDORS/nvidia.icd"
     export OCL_ICD_VENDORS
+    trap 'rm -rf "$OCL_ICD_VENDORS"' EXIT
 fi
 "$player" --list-devices || exit 1
 device=$("$player" --list-devices | grep -i nvidia | head -1 | sed 's/[^0-9].*//')
