@@ -8,7 +8,7 @@
 typedef struct open_pack {
     void *bytes, *arena;
     uint8_t *frame;
-    size_t stride;             /* bytes a row of `frame` */
+    size_t stride; /* bytes a row of `frame` */
     vit_open_info info;
     vit_requirements need;
     vit *v;

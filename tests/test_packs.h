@@ -10,15 +10,16 @@
 #define TEST_SCENES VIT_BUILD_DIR "/scenes"
 
 /* A room of five sides for cameras and lights of our own: textures, one with holes, a lamp that glows. */
-static const char test_packs_room[] = "mtllib room.mtl\n"
-                                      "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nv -1 0 1\nv 1 0 1\nv 1 2 1\nv -1 2 1\n"
-                                      "v -0.8 0.2 -0.5\nv 0.8 0.2 -0.5\nv 0.8 1.8 -0.5\nv -0.8 1.8 -0.5\n"
-                                      "v -0.3 1.99 -0.3\nv 0.3 1.99 -0.3\nv 0.3 1.99 0.3\nv -0.3 1.99 0.3\n"
-                                      "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
-                                      "usemtl floor\nf 1/1 5/2 6/3 2/4\n"
-                                      "usemtl wall\nf 1/1 2/2 3/3 4/4\nf 1/1 4/2 8/3 5/4\nf 2/1 6/2 7/3 3/4\nf 4/1 3/2 7/3 8/4\n"
-                                      "usemtl leaves\nf 9/1 10/2 11/3 12/4\n"
-                                      "usemtl lamp\nf 13/1 14/2 15/3 16/4\n";
+static const char test_packs_room[] =
+    "mtllib room.mtl\n"
+    "v -1 0 -1\nv 1 0 -1\nv 1 2 -1\nv -1 2 -1\nv -1 0 1\nv 1 0 1\nv 1 2 1\nv -1 2 1\n"
+    "v -0.8 0.2 -0.5\nv 0.8 0.2 -0.5\nv 0.8 1.8 -0.5\nv -0.8 1.8 -0.5\n"
+    "v -0.3 1.99 -0.3\nv 0.3 1.99 -0.3\nv 0.3 1.99 0.3\nv -0.3 1.99 0.3\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "usemtl floor\nf 1/1 5/2 6/3 2/4\n"
+    "usemtl wall\nf 1/1 2/2 3/3 4/4\nf 1/1 4/2 8/3 5/4\nf 2/1 6/2 7/3 3/4\nf 4/1 3/2 7/3 8/4\n"
+    "usemtl leaves\nf 9/1 10/2 11/3 12/4\n"
+    "usemtl lamp\nf 13/1 14/2 15/3 16/4\n";
 static const char test_packs_materials[] = "newmtl floor\nKd 0.8 0.7 0.6\nmap_Kd ../scenes/wood.png\n"
                                            "newmtl wall\nKd 0.7 0.7 0.7\n"
                                            "newmtl leaves\nKd 0.9 0.9 0.9\nmap_Kd holes.tga\nmap_d holes.tga\n"
@@ -40,8 +41,7 @@ static inline void test_packs_holes(unsigned char out[HOLES_BYTES]) {
     "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
     "lights = (" lights ");\n"                                                                                                 \
     "quality: { photons = 2000; radius = 0.4; tile = 16; };\n"
-#define ROOM_STILL                                                                                                             \
-    "{ type = \"point\"; range = 9.0; keys = ( { position = [0.4, 1.7, 0.5]; power = [40.0, 50.0, 60.0]; } ); }"
+#define ROOM_STILL "{ type = \"point\"; range = 9.0; keys = ( { position = [0.4, 1.7, 0.5]; power = [40.0, 50.0, 60.0]; } ); }"
 #define ROOM_MOVING                                                                                                            \
     "{ type = \"spot\"; inner = 30.0; outer = 60.0;"                                                                           \
     " keys = ( { position = [-0.5, 1.9, 0.3]; target = [0.0, 0.0, 0.0]; power = [60.0, 50.0, 40.0]; },"                        \
@@ -102,7 +102,8 @@ static inline void test_packs_put(const char *name, const void *bytes, size_t si
 }
 
 static inline int test_packs_later(const struct stat *a, const struct stat *b) {
-    return a->st_mtim.tv_sec != b->st_mtim.tv_sec ? a->st_mtim.tv_sec > b->st_mtim.tv_sec : a->st_mtim.tv_nsec > b->st_mtim.tv_nsec;
+    return a->st_mtim.tv_sec != b->st_mtim.tv_sec ? a->st_mtim.tv_sec > b->st_mtim.tv_sec
+                                                  : a->st_mtim.tv_nsec > b->st_mtim.tv_nsec;
 }
 
 /* Makes the folder and the scene files in it. */
@@ -130,7 +131,8 @@ static inline const char *test_pack(const char *name) {
     const size_t i = test_packs_find(name);
     test_packs_begin();
     (void)snprintf(path, sizeof path, TEST_PACKS "/%s.vit", name);
-    const char *const from[] = {TOOL_BAKE, test_packs[i].input, TEST_PACKS "/room.obj", TEST_PACKS "/room.mtl", TEST_PACKS "/holes.tga"};
+    const char *const from[] = {TOOL_BAKE, test_packs[i].input, TEST_PACKS "/room.obj", TEST_PACKS "/room.mtl",
+                                TEST_PACKS "/holes.tga"};
     int fresh = stat(path, &pack) == 0;
     for (size_t k = 0; k < sizeof from / sizeof from[0]; k++) {
         struct stat s;

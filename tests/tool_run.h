@@ -92,8 +92,8 @@ static inline void tool_refuses(tool_run *r, const char *name, int code, const c
     const size_t length = strlen(name);
     if (r->code != code || r->out[0] || !feed || feed[1] || strncmp(r->err, name, length) != 0 || r->err[length] != ':' ||
         !strstr(r->err, says))
-        fail_msg("%s\nexit %d, want %d; stderr must be one line '%s: ...%s...'\nstderr: %s\nstdout: %s", r->line, r->code, code, name,
-                 says, r->err, r->out);
+        fail_msg("%s\nexit %d, want %d; stderr must be one line '%s: ...%s...'\nstderr: %s\nstdout: %s", r->line, r->code, code,
+                 name, says, r->err, r->out);
 }
 
 /* A run that must go well. */

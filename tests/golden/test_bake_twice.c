@@ -2,8 +2,8 @@
  *
  * Why this is hard: the baker's threads race for work, Embree builds its tree with all of them, and an uninitialised byte of a
  * record may be equal by luck. Strategy: whole files are compared, byte by byte, between bakes with one thread and with
- * several, of the baker and of the device that measures, on scenes that reach every stage: traced photons, photons of still lights,
- * textures with holes, sides that no light reaches, buckets. The first bytes that differ are named by their section. */
+ * several, of the baker and of the device that measures, on scenes that reach every stage: traced photons, photons of still
+ * lights, textures with holes, sides that no light reaches, buckets. The first bytes that differ are named by their section. */
 #include "test_packs.h"
 #include "vitrine_pack.h"
 

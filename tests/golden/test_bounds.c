@@ -1,10 +1,10 @@
 /* Bounds: the baker's are exact, and bounds that are too small drop by index, count what they drop, and change nothing else.
  *
- * Why this is hard: whether a bound is exact, only a second way of counting can tell. Strategy: an oracle counts nodes, clusters
- * and dropped samples from the samples' keys alone, which vit_trace() shows, by sorting them; the frame that needs the largest bound
- * is then played with one entry or node less, where what is lost is known to the entry and to the sample, and with
- * ends that have a picture of their own: no list of a cluster left, or one node, must leave exactly the direct light. The pack's
- * size is whole tiles, so that every sample is a pixel. */
+ * Why this is hard: whether a bound is exact, only a second way of counting can tell. Strategy: an oracle counts nodes,
+ * clusters and dropped samples from the samples' keys alone, which vit_trace() shows, by sorting them; the frame that needs the
+ * largest bound is then played with one entry or node less, where what is lost is known to the entry and to the sample, and
+ * with ends that have a picture of their own: no list of a cluster left, or one node, must leave exactly the direct light. The
+ * pack's size is whole tiles, so that every sample is a pixel. */
 #include "open_pack.h"
 #include "pack_read.h"
 
@@ -165,9 +165,11 @@ typedef struct outcome {
 
 static outcome outcome_of(const char *name, uint32_t frame, uint32_t max_nodes, uint32_t max_list, vit_view view) {
     open_pack p;
-    pack_open(&p, name, (vit_open_info){.format = VIT_FORMAT_RGBA32F, .view = view, .max_nodes = max_nodes, .max_list = max_list});
+    pack_open(&p, name,
+              (vit_open_info){.format = VIT_FORMAT_RGBA32F, .view = view, .max_nodes = max_nodes, .max_list = max_list});
     pack_frame(&p, frame);
-    outcome o = {.stats = pack_stats(&p), .pixels = malloc(p.need.frame_bytes), .count = p.need.frame_bytes / 16, .width = p.need.width};
+    outcome o = {
+        .stats = pack_stats(&p), .pixels = malloc(p.need.frame_bytes), .count = p.need.frame_bytes / 16, .width = p.need.width};
     assert_non_null(o.pixels);
     memcpy(o.pixels, p.frame, p.need.frame_bytes);
     pack_close(&p);
@@ -295,7 +297,8 @@ static void bounds_larger_than_needed_change_no_bit(void **state) {
     for (size_t i = 0; i < 2; i++) {
         open_pack p, q;
         pack_open(&p, names[i], (vit_open_info){0});
-        pack_open(&q, names[i], (vit_open_info){.max_nodes = bound_of_nodes(&p) * 2 + 7, .max_list = bound_of_list(&p) * 3 + 1});
+        pack_open(&q, names[i],
+                  (vit_open_info){.max_nodes = bound_of_nodes(&p) * 2 + 7, .max_list = bound_of_list(&p) * 3 + 1});
         for (uint32_t f = 0; f < p.need.frames; f++)
             assert_int_equal(pack_frame_hash(&q, f), vit_golden(p.v, f));
         assert_int_equal(pack_stats(&q).dropped_entries + pack_stats(&q).dropped_samples, 0);
@@ -307,7 +310,8 @@ static void bounds_larger_than_needed_change_no_bit(void **state) {
 static tool_run r;
 
 /* The player with these bounds: the frames' hashes, and the line that tells what was dropped. */
-static void play_bounded(const char *environment, const char *name, uint32_t max_nodes, uint32_t max_list, const char *options) {
+static void play_bounded(const char *environment, const char *name, uint32_t max_nodes, uint32_t max_list,
+                         const char *options) {
     char bounds[80] = "";
     size_t n = 0;
     if (max_nodes)

@@ -1,7 +1,7 @@
 /* An effect that the scene does not call for costs nothing: no buffer, no pass, no kernel.
  *
- * Why this is hard: what is not there cannot be looked at, and a table that is asked about itself agrees with itself. Strategy: packs
- * that differ in one effect are compared by what vit_require() says about them, against what that effect alone may add;
+ * Why this is hard: what is not there cannot be looked at, and a table that is asked about itself agrees with itself. Strategy:
+ * packs that differ in one effect are compared by what vit_require() says about them, against what that effect alone may add;
  * and what vit_require() says is held against what the library really asks of OpenCL, since this program is linked with --wrap
  * for the three calls that make and run things. Nothing is compiled either: the program's own list of kernels is read. */
 #include "open_pack.h"
@@ -38,12 +38,15 @@ cl_mem __wrap_clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size
     return __real_clCreateBuffer(context, flags, size, host, error);
 }
 
-cl_int __real_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
-                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event);
-cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
-                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event);
-cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
-                                     const size_t *local, cl_uint waits, const cl_event *wait, cl_event *event) {
+cl_int __real_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset,
+                                     const size_t *global, const size_t *local, cl_uint waits, const cl_event *wait,
+                                     cl_event *event);
+cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset,
+                                     const size_t *global, const size_t *local, cl_uint waits, const cl_event *wait,
+                                     cl_event *event);
+cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset,
+                                     const size_t *global, const size_t *local, cl_uint waits, const cl_event *wait,
+                                     cl_event *event) {
     asked.enqueued++;
     for (uint32_t i = 0; i < asked.kernels; i++)
         asked.runs[i] += asked.made[i] == kernel;
@@ -89,7 +92,8 @@ static void adds(const char *with, const char *without, const char *buffers, con
         const char *name = a.buffers[i].name;
         assert_true(a.buffers[i].bytes > 0);
         if ((bytes_of(&b, name) == 0) != is_among(buffers, name))
-            fail_msg("buffer %s: is in %s, and in %s it has %llu bytes", name, with, without, (unsigned long long)bytes_of(&b, name));
+            fail_msg("buffer %s: is in %s, and in %s it has %llu bytes", name, with, without,
+                     (unsigned long long)bytes_of(&b, name));
     }
     for (uint32_t i = 0; i < a.pass_count; i++)
         if (has_pass(&b, a.passes[i]) == is_among(passes, a.passes[i]))
@@ -109,7 +113,8 @@ static void without_photons_four_passes_and_no_photon_buffer_are_left(void **sta
     assert_int_equal(need.pass_count, 4);
     for (uint32_t i = 0; i < 4; i++)
         assert_string_equal(need.passes[i], passes[i]);
-    assert_int_equal(need.effects & (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS), 0);
+    assert_int_equal(
+        need.effects & (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS), 0);
     static const char buffers[] = " scene cameras lights triangles attributes bvh materials hit_triangle hit_distance position "
                                   "normal albedo direct counters framebuffer ";
     for (uint32_t i = 0; i < need.buffer_count; i++)
@@ -136,7 +141,8 @@ static void a_list_has_no_buckets_and_buckets_have_no_list_estimate(void **state
     (void)state;
     adds("buckets", "list", " buckets ", " splat_buckets bucket_clear estimate_buckets ");
     adds("list", "buckets", " ", " estimate_list ");
-    assert_true(bytes_of(&(vit_requirements[]){requirements("buckets")}[0], "list") < bytes_of(&(vit_requirements[]){requirements("list")}[0], "list"));
+    assert_true(bytes_of(&(vit_requirements[]){requirements("buckets")}[0], "list") <
+                bytes_of(&(vit_requirements[]){requirements("list")}[0], "list"));
 }
 
 static void raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone(void **state) {

@@ -1,10 +1,10 @@
 /* The library never allocates, opens a file or prints: neither in the frame loop nor anywhere else.
  *
  * Why this is hard: the OpenCL implementation below the library does all of that, in the same process and inside our calls.
- * Strategy: two views from outside. The objects' lists of undefined symbols are held to a list of what is allowed: what is not linked
- * cannot be called. And this program is linked with --wrap for each forbidden function, which redirects the calls of the objects
- * that are linked statically (the library's and this file's) but not those of shared libraries; they are counted while the library
- * runs. Both must be able to see: a call of this file's own is counted first. */
+ * Strategy: two views from outside. The objects' lists of undefined symbols are held to a list of what is allowed: what is not
+ * linked cannot be called. And this program is linked with --wrap for each forbidden function, which redirects the calls of the
+ * objects that are linked statically (the library's and this file's) but not those of shared libraries; they are counted while
+ * the library runs. Both must be able to see: a call of this file's own is counted first. */
 #include "open_pack.h"
 #include <fcntl.h>
 
@@ -20,7 +20,7 @@
     X(int, putchar, (int byte), (byte))                                                                                        \
     X(int, fputs, (const char *text, FILE *to), (text, to))                                                                    \
     X(size_t, fwrite, (const void *from, size_t size, size_t count, FILE *to), (from, size, count, to))                        \
-    X(int, vfprintf, (FILE *to, const char *format, va_list list), (to, format, list))                                         \
+    X(int, vfprintf, (FILE * to, const char *format, va_list list), (to, format, list))                                        \
     X(ssize_t, write, (int file, const void *from, size_t size), (file, from, size))
 
 static int calls; /* of forbidden functions since it was set to 0 */
@@ -78,10 +78,26 @@ int __wrap_open(const char *path, int flags, ...) {
 }
 
 /* What the library's objects may need from outside: OpenCL, memory and text in place, and what compilers put in. */
-static const char *const allowed[] = {"memcpy",          "memset",         "memmove",          "memcmp",  "memchr", "strlen", "strcmp",
-                                      "strncmp",         "strchr",         "snprintf",         "vsnprintf", "__snprintf_chk",
-                                      "__vsnprintf_chk", "__memcpy_chk",   "__memset_chk",     "__stack_chk_fail", "_GLOBAL_OFFSET_TABLE_",
-                                      "floor",           "floorf",         "sqrtf"};
+static const char *const allowed[] = {"memcpy",
+                                      "memset",
+                                      "memmove",
+                                      "memcmp",
+                                      "memchr",
+                                      "strlen",
+                                      "strcmp",
+                                      "strncmp",
+                                      "strchr",
+                                      "snprintf",
+                                      "vsnprintf",
+                                      "__snprintf_chk",
+                                      "__vsnprintf_chk",
+                                      "__memcpy_chk",
+                                      "__memset_chk",
+                                      "__stack_chk_fail",
+                                      "_GLOBAL_OFFSET_TABLE_",
+                                      "floor",
+                                      "floorf",
+                                      "sqrtf"};
 static const char *const allowed_beginnings[] = {"cl", "__asan_", "__ubsan_", "__gcov_", "__llvm_"};
 
 static int is_allowed(const char *name) {

@@ -1,9 +1,9 @@
 /* The library from outside: one header and one archive, in C and in C++, and nothing of the baker.
  *
- * Strategy: the compiler is the judge. The header is compiled alone in both languages with every warning an error; a small program
- * of a user's is built with the header, the archive and OpenCL alone, and plays a pack. What a folder may include is
- * read from the sources: each #include "..." is resolved as the compiler does it and must lie where DESIGN.md's table of folders
- * allows. */
+ * Strategy: the compiler is the judge. The header is compiled alone in both languages with every warning an error; a small
+ * program of a user's is built with the header, the archive and OpenCL alone, and plays a pack. What a folder may include is
+ * read from the sources: each #include "..." is resolved as the compiler does it and must lie where DESIGN.md's table of
+ * folders allows. */
 #include "test_packs.h"
 
 #include <dirent.h>
@@ -31,7 +31,8 @@ static void the_header_alone_compiles_as_cpp17(void **state) {
 static void the_header_twice_is_as_good_as_once(void **state) {
     (void)state;
     test_packs_begin();
-    static const char twice[] = "#include \"vitrine.h\"\n#include \"vitrine.h\"\nvit *none(void);\nvit *none(void) { return 0; }\n";
+    static const char twice[] =
+        "#include \"vitrine.h\"\n#include \"vitrine.h\"\nvit *none(void);\nvit *none(void) { return 0; }\n";
     test_packs_write(TEST_PACKS "/twice.c", twice, sizeof twice - 1);
     tool(&r, "cc -x c -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude " TEST_PACKS "/twice.c");
     tool_succeeds(&r);

@@ -2,13 +2,13 @@
  *
  * Why this is hard: there is no reference picture to compare with, and a race may show only once in many frames. Strategy:
  * the pack's golden hashes are one witness, a first plain run is the second; then everything that must not matter is varied,
- * one thing at a time and some together: run, thread count, lanes, work-group size, PoCL's device and its way of making work-groups,
- * order of frames. Each run must print exactly the lines of the first. Traces say the same of every buffer after every pass, so that
- * a difference that a later pass hides shows too. Threads and devices are settings of a whole process, so the real player
- * runs as a child. */
+ * one thing at a time and some together: run, thread count, lanes, work-group size, PoCL's device and its way of making
+ * work-groups, order of frames. Each run must print exactly the lines of the first. Traces say the same of every buffer after
+ * every pass, so that a difference that a later pass hides shows too. Threads and devices are settings of a whole process, so
+ * the real player runs as a child. */
 #include "test_packs.h"
 
-enum { AT_ONCE = 2 }; /* most of a run's time is PoCL's compiler, which has one thread */
+enum { AT_ONCE = 2 };          /* most of a run's time is PoCL's compiler, which has one thread */
 static tool_run runs[AT_ONCE]; /* too large for a stack */
 
 /* Lines that the variants are held to. */
@@ -37,8 +37,8 @@ static void assert_as_expected(const tool_run *r) {
         at++;
     while (at > 0 && r->out[at - 1] != '\n')
         at--;
-    fail_msg("%s\nis different from the plain run; the first line that differs:\n%.99s\nbut the plain run's\n%.99s", r->line, r->out + at,
-             expected + at);
+    fail_msg("%s\nis different from the plain run; the first line that differs:\n%.99s\nbut the plain run's\n%.99s", r->line,
+             r->out + at, expected + at);
 }
 
 /* Every environment and set of options gives the lines of the first; `what` goes with all. */
@@ -60,7 +60,8 @@ static void assert_all_alike(const char *pack, const char *what, const variant *
 }
 
 #define COUNT(a) (sizeof(a) / sizeof(a)[0])
-/* PoCL's ways of making work-groups (auto is the plain run's), each with a cache of its own: what was compiled another way must not be taken. */
+/* PoCL's ways of making work-groups (auto is the plain run's), each with a cache of its own: what was compiled another way must
+ * not be taken. */
 #define METHOD(m) "POCL_WORK_GROUP_METHOD=" m " POCL_CACHE_DIR=" TEST_PACKS "/pocl-" m
 
 static const variant one_at_a_time[] = {
@@ -155,7 +156,8 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
 static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
     (void)state;
     static const char *const packs[] = {"list", "1x1", "17x1", "33x47"};
-    static const char *const formats[] = {"--verify --hash", "--verify --hash --format rgb565", "--verify --hash --format rgba32f"};
+    static const char *const formats[] = {"--verify --hash", "--verify --hash --format rgb565",
+                                          "--verify --hash --format rgba32f"};
     static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16"}};
     for (size_t i = 0; i < COUNT(packs); i++)
         for (size_t f = 0; f < COUNT(formats); f++)

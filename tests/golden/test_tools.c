@@ -1,9 +1,9 @@
 /* Both tools with real packs: exit codes, one-line errors, what is written and what is not left behind.
  *
- * Strategy: the real programs, as a shell would run them. An error is held to three promises: the exit code says the cause, stderr
- * is one line that begins with the tool's name, stdout is empty. A tool that fails or is interrupted may leave no file in the folder that it
- * was to write to. What the player refuses before it reads a pack is in tests/unit/test_player.c, scenes that the baker
- * refuses are in tests/unit/test_scene.c; here only that the tools pass those errors on. */
+ * Strategy: the real programs, as a shell would run them. An error is held to three promises: the exit code says the cause,
+ * stderr is one line that begins with the tool's name, stdout is empty. A tool that fails or is interrupted may leave no file
+ * in the folder that it was to write to. What the player refuses before it reads a pack is in tests/unit/test_player.c, scenes
+ * that the baker refuses are in tests/unit/test_scene.c; here only that the tools pass those errors on. */
 #include "pack_image.h"
 #include "test_packs.h"
 
@@ -99,17 +99,20 @@ static void the_baker_refuses_bad_scenes_with_file_and_line(void **state) {
     scene_refused("meshes = (\n", "bad.cfg:");
     scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "quality: { photons = -1; };\n", "bad.cfg:3: ");
     scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "speed = 3;\n", "bad.cfg:3: ");
-    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "\nlights = ( { type = \"sun\"; } );\n", "bad.cfg:4: light 1");
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "\nlights = ( { type = \"sun\"; } );\n",
+                  "bad.cfg:4: light 1");
     scene_refused("meshes = ( { file = \"nowhere.obj\"; } );\n" CAMERA, "nowhere.obj");
     scene_refused("meshes = ( { file = \"room.mtl\"; } );\n" CAMERA, "room.mtl");
-    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\noutput: { width = 0; };\n",
+    scene_refused("meshes = ( { file = \"room.obj\"; } );\n" CAMERA
+                  "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\noutput: { width = 0; };\n",
                   "bad.cfg:4: ");
 }
 
 static void a_missing_texture_is_an_error_only_if_strict(void **state) {
     (void)state;
-    static const char text[] = "output: { width = 16; height = 16; frames = 1; };\nmeshes = ( { file = \"room.obj\"; } );\n" CAMERA
-                               "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\n";
+    static const char text[] =
+        "output: { width = 16; height = 16; frames = 1; };\nmeshes = ( { file = \"room.obj\"; } );\n" CAMERA
+        "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\n";
     test_packs_write(TEST_PACKS "/bad.cfg", text, sizeof text - 1);
     bake_refuses("--strict " TEST_PACKS "/bad.cfg" OUT, VIT_BAD_INPUT, "nowhere.png");
     tool(&r, TOOL_BAKE " --quiet " TEST_PACKS "/bad.cfg" OUT);
@@ -290,7 +293,8 @@ static void a_png_says_its_size(void **state) {
     tool_succeeds(&r);
     size_t size;
     unsigned char *png = test_packs_load(FOLDER "/png/frame_00001.png", &size);
-    static const unsigned char head[] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 0, 0, 33, 0, 0, 0, 47, 8, 2};
+    static const unsigned char head[] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0, 0, 0,  13, 'I',
+                                         'H',  'D', 'R', 0,   0,  0,  33, 0,  0, 0, 47, 8,  2};
     assert_true(size > 200);
     assert_memory_equal(png, head, sizeof head);
     assert_memory_equal(png + size - 8, "IEND", 4);
