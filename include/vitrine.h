@@ -89,6 +89,7 @@ typedef struct vit_open_info {
     void *framebuffer;         /* optional: vit_requirements.frame_bytes, 64-byte aligned, alive until vit_close(). Where the device shares
                                 * the host's memory, frames are rendered into it in place: give vit_frame() the same pointer */
     uint32_t profile;          /* 1: time each pass (vit_stats.pass_ms) */
+    uint32_t count_work;       /* 1: count each pass's work (vit_stats.pass_work); frames are slower and have the same bits */
     uint32_t max_nodes;        /* not 0: lower or raise this bound of the pack (tests, baker) */
     uint32_t max_list;         /* likewise */
 } vit_open_info;
@@ -102,6 +103,7 @@ typedef struct vit_buffer_info {
 
 #define VIT_MAX_BUFFERS 48
 #define VIT_MAX_PASSES 64
+#define VIT_MAX_WORKS 16
 
 typedef struct vit_requirements {
     uint32_t width, height;    /* pixels */
@@ -127,6 +129,10 @@ typedef struct vit_statistics {
     uint32_t pass_count;
     const char *pass_names[VIT_MAX_PASSES];
     double pass_ms[VIT_MAX_PASSES];                          /* last frame; 0 unless opened with profile */
+    uint32_t work_count;                                     /* kinds of work; 0 unless opened with count_work */
+    const char *work_names[VIT_MAX_WORKS];
+    int work_same[VIT_MAX_WORKS];                            /* 1: equal on every device; 0: compare at equal `lanes` only */
+    uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS];       /* last frame, exact */
 } vit_statistics;
 
 typedef struct vit vit;
