@@ -3,18 +3,19 @@ TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 # Sources, or names from the command line: make bench BENCH="rays open".
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
+COST_PARTS := $(filter-out bake/cost/main.c,$(COST))
 SCENES_MADE := $(B)/scenes/atrium.obj
 
-$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS) $(COST_PARTS)) $(B)/libvitrine.a
+	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write
 $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
-$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS) $(COST_PARTS)) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
