@@ -36,9 +36,8 @@ obj = $(patsubst %.c,$(B)/%.o,$(1))
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
 LIBS_RUNTIME := -lOpenCL
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
-# MPI, if it is installed, spreads references over machines (bake/cost/spread.h).
-MPICC := $(shell command -v mpicc)
-LIBS_COST := $(if $(MPICC),$(shell $(MPICC) --showme:link))
+# Open MPI, if it is installed, spreads references over machines (bake/cost/spread.h).
+LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
 .DELETE_ON_ERROR:
@@ -58,8 +57,8 @@ $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 
 $(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
 $(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
-ifneq ($(MPICC),)
-$(B)/bake/cost/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell $(MPICC) --showme:compile))
+ifneq ($(LIBS_COST),)
+$(B)/bake/cost/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
 endif
 $(B)/tests/%.o: CFLAGS_ALL += -Ibake -Iruntime -Itests -DVIT_EMBREE=$(EMBREE) -DVIT_BUILD_DIR='"$(B)"'
 $(B)/kernel_sources.o: $(B)/kernel_sources.c
