@@ -55,6 +55,16 @@ $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 	   for f in $(KERNELS); do printf '"#line 1 \\"%s\\"\\n"\n' $$f; sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' kernels/$$f; echo ','; done; \
 	   echo '};'; echo 'const unsigned vit_kernel_source_count = sizeof vit_kernel_sources / sizeof vit_kernel_sources[0];'; } > $@
 
+# The report's style sheet and script as C strings.
+$(B)/report_files.c: bake/cost/report.css bake/cost/report.js Makefile
+	@mkdir -p $(@D)
+	@set -e; { echo '/* Made from bake/cost/ by the Makefile. */'; \
+	   for f in css js; do echo "extern const char report_$$f[];"; echo "const char report_$$f[] ="; \
+	     sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' bake/cost/report.$$f; echo ';'; done; } > $@
+
+$(B)/report_files.o: CFLAGS_ALL += -Wno-overlength-strings
+$(B)/report_files.o: $(B)/report_files.c
+	$(CC) $(CFLAGS_ALL) -c $< -o $@
 $(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
 $(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
 ifneq ($(LIBS_COST),)

@@ -1,6 +1,6 @@
 # What a machine needs; nothing happens where it is all there. Debian 12 and 13, Ubuntu 24.04.
 DEPS := make gcc g++ libc6-dev ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libassimp-dev libembree-dev libstb-dev \
-        libconfig-dev libpng-dev libxxhash-dev libcmocka-dev
+        libconfig-dev libpng-dev libxxhash-dev libcmocka-dev gnuplot-nox
 deps:
 	@missing=; for p in $(DEPS); do dpkg-query -W -f '$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] || { echo "make deps: installing$$missing"; S=; [ "$$(id -u)" = 0 ] || S=sudo; \

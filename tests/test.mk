@@ -4,9 +4,10 @@ TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
 COST_PARTS := $(filter-out bake/cost/main.c,$(COST))
+COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
 SCENES_MADE := $(B)/scenes/atrium.obj
 
-$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS) $(COST_PARTS)) $(B)/libvitrine.a
+$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \

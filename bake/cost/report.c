@@ -1,0 +1,79 @@
+/* report.c: makes the folder; each file is made in memory and put under its name whole. */
+#include "report.h"
+#include "pack_write.h"
+#include "report_parts.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static vit_status fail_folder(vit_text *why, const char *folder, int error) {
+    (void)snprintf(why->text, sizeof why->text, "%.300s: cannot make this folder: %s", folder, strerror(error));
+    return VIT_FAILED;
+}
+
+/* The folder and those above it. */
+static vit_status make_folder(const char *folder, vit_text *why) {
+    char path[PATH_MAX];
+    const size_t length = strlen(folder);
+    if (length == 0 || length >= sizeof path)
+        return fail_folder(why, folder, length ? ENAMETOOLONG : ENOENT);
+    memcpy(path, folder, length + 1);
+    for (size_t i = 1; i <= length; i++) {
+        if (path[i] != '/' && path[i] != '\0')
+            continue;
+        path[i] = '\0';
+        struct stat there;
+        if (mkdir(path, 0777) != 0 && errno != EEXIST)
+            return fail_folder(why, folder, errno);
+        if (stat(path, &there) != 0 || !S_ISDIR(there.st_mode))
+            return fail_folder(why, folder, ENOTDIR);
+        path[i] = folder[i];
+    }
+    return VIT_OK;
+}
+
+typedef vit_status part_fn(const cost_results *r, FILE *to, vit_text *why);
+
+static vit_status csv_part(const cost_results *r, FILE *to, vit_text *why) {
+    (void)why;
+    report_csv(r, to);
+    return VIT_OK;
+}
+
+static vit_status json_part(const cost_results *r, FILE *to, vit_text *why) {
+    (void)why;
+    report_json(r, to);
+    return VIT_OK;
+}
+
+static vit_status write_part(const cost_results *r, const char *folder, const char *name, part_fn *part, vit_text *why) {
+    char path[PATH_MAX];
+    const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return fail_folder(why, folder, ENAMETOOLONG);
+    char *bytes = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&bytes, &size);
+    vit_status status = to ? part(r, to, why) : VIT_FAILED;
+    const bool whole = to && !ferror(to);
+    if ((to && fclose(to) != 0) || !whole) {
+        (void)snprintf(why->text, sizeof why->text, "%s: out of memory", name);
+        status = VIT_FAILED;
+    }
+    if (status == VIT_OK)
+        status = pack_save(path, bytes, size, why);
+    free(bytes);
+    return status;
+}
+
+vit_status report_write(const cost_results *r, const char *folder, vit_text *why) {
+    vit_status status = make_folder(folder, why);
+    if (status == VIT_OK)
+        status = write_part(r, folder, "report.csv", csv_part, why);
+    if (status == VIT_OK)
+        status = write_part(r, folder, "report.json", json_part, why);
+    return status == VIT_OK ? write_part(r, folder, "index.html", report_page, why) : status;
+}
