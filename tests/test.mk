@@ -3,8 +3,6 @@ TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 # Sources, or names from the command line: make bench BENCH="rays open".
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
-COST_PARTS := $(filter-out bake/cost/main.c,$(COST))
-COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
 SCENES_MADE := $(B)/scenes/atrium.obj
 
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
@@ -29,7 +27,7 @@ test: deps
 SANITIZED := $(addprefix $(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
 run-sanitized: $(SANITIZED)
 	@for t in $(SANITIZED); do echo "== $$t"; $$t || exit 1; done
-run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(TEST_PROGRAMS)
+run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(TEST_PROGRAMS)
 	@for t in $(TEST_PROGRAMS); do echo "== $$t"; $$t || exit 1; done
 
 bench: deps

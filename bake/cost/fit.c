@@ -20,11 +20,11 @@ static uint64_t weight_of(const char *kind) {
     return 0;
 }
 
-uint64_t fit_work_units(const uint64_t work[][VIT_MAX_WORKS], uint32_t passes, const char *const *names, uint32_t count) {
+uint64_t fit_work_units(const cost_setting *s, const char *const *names, uint32_t count) {
     uint64_t units = 0;
     for (uint32_t k = 0; k < count; k++)
-        for (uint32_t p = 0; p < passes; p++)
-            units += weight_of(names[k]) * work[p][k];
+        for (uint32_t p = 0; p < s->pass_count; p++)
+            units += weight_of(names[k]) * s->pass_work[p][k];
     return units;
 }
 
@@ -80,14 +80,27 @@ vit_status fit_choose(const cost_results *r, const fit_budget *b, const bool *le
     return best == r->count ? refuse(r, b, closest, why) : VIT_OK;
 }
 
-/* The front's settings, fastest first: order[0 .. result - 1]. */
-static uint32_t front_order(const cost_results *r, bool relmse, uint32_t *order) {
+/* No other setting costs at most as much, in what the budget counts, and is at most as wrong. */
+static bool on_front(const cost_results *r, const fit_budget *b, uint32_t i) {
+    const cost_setting *s = &r->settings[i];
+    for (uint32_t k = 0; k < r->count; k++) {
+        const cost_setting *o = &r->settings[k];
+        if (k == i || o->elsewhere || price(o, b) > price(s, b) || error_of(o, b) > error_of(s, b))
+            continue;
+        if (price(o, b) < price(s, b) || error_of(o, b) < error_of(s, b) || k < i)
+            return false;
+    }
+    return !s->elsewhere;
+}
+
+/* The front's settings and the choice, cheapest first: order[0 .. result - 1]. */
+static uint32_t front_order(const cost_results *r, const fit_budget *b, uint32_t chosen, uint32_t *order) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {
-        if (!(relmse ? r->settings[i].front_relmse : r->settings[i].front))
+        if (i != chosen && !on_front(r, b, i))
             continue;
         uint32_t at = count++;
-        for (; at > 0 && r->settings[order[at - 1]].ms > r->settings[i].ms; at--)
+        for (; at > 0 && price(&r->settings[order[at - 1]], b) > price(&r->settings[i], b); at--)
             order[at] = order[at - 1];
         order[at] = i;
     }
@@ -103,14 +116,9 @@ void fit_print(const cost_results *r, const fit_budget *b, uint32_t chosen, FILE
     uint32_t *order = calloc((size_t)r->count + 1, sizeof *order);
     if (!order)
         return; /* a table less; the choice is said in any case */
-    const uint32_t count = front_order(r, b->relmse, order);
-    bool on_front = false;
+    const uint32_t count = front_order(r, b, chosen, order);
     (void)fprintf(to, "  %8s %8s %14s %9s %9s %8s  %s\n", "ms", "p95 ms", "work units", "NMSE", "relMSE", "bias %", "setting");
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++)
         print_row(&r->settings[order[i]], order[i] == chosen, to);
-        on_front = on_front || order[i] == chosen;
-    }
-    if (!on_front && chosen < r->count)
-        print_row(&r->settings[chosen], true, to);
     free(order);
 }
