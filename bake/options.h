@@ -14,7 +14,7 @@ typedef struct options {
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
     const char *estimate, *smoothing, *kernel;
-    int normal_keys;           /* -1: as the scene says */
+    int normal_keys, zones, effective_area, bounce_sequence; /* -1: as the scene says; zones: 2 with light_zones */
 } options;
 
 /* VIT_USAGE: why->text names the option. */

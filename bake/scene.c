@@ -41,6 +41,10 @@ static const field quality_fields[] = {
     {"smoothing", FIELD_CHOICE, offsetof(quality_group, q.raw), "interpolated|raw"},
     {"kernel", FIELD_CHOICE, offsetof(quality_group, flattened), "sphere|flattened"},
     {"normal_keys", FIELD_SWITCH, offsetof(quality_group, q.normal_keys), NULL},
+    {"zones", FIELD_SWITCH, offsetof(quality_group, q.zones), NULL},
+    {"light_zones", FIELD_SWITCH, offsetof(quality_group, q.light_zones), NULL},
+    {"effective_area", FIELD_SWITCH, offsetof(quality_group, q.effective_area), NULL},
+    {"bounce_sequence", FIELD_SWITCH, offsetof(quality_group, q.bounce_sequence), NULL},
 };
 
 void reader_at(reader *r, const char *group, int index) {
