@@ -81,7 +81,7 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
                             .settings = o->settings,
                             .frame = o->frame,
                             .every = o->every,
-                            .repeats = o->repeats,
+                            .repeats = o->output || o->fit > 0 ? o->repeats : 0, /* work needs no times */
                             .reference_error = o->reference_error,
                             .max_samples = o->max_samples,
                             .cache = o->no_cache ? NULL
