@@ -1,4 +1,5 @@
 #include "options.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,13 @@ static bool radius_of(const char *text, options *o) {
         return text != NULL;
     o->radius = strtod(text, &end);
     return *text && *end == 0 && o->radius > 0 && o->radius < 1e9;
+}
+
+/* A positive number. */
+static bool budget_of(const char *text, double *out) {
+    char *end;
+    *out = text ? strtod(text, &end) : 0;
+    return text && *text >= '0' && *text <= '9' && *end == 0 && *out > 0 && *out < 1e18;
 }
 
 static bool one_of(const char *text, const char *a, const char *b, const char **out) {
@@ -84,6 +92,10 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
     }
     if (strcmp(name, "--size") == 0)
         return *wants = "WIDTHxHEIGHT, up to 7680x4320", size_of(value, &o->width, &o->height);
+    if (strcmp(name, "--fit") == 0)
+        return *wants = "milliseconds a frame", budget_of(value, &o->fit);
+    if (strcmp(name, "--fit-work") == 0)
+        return *wants = "work units a frame, a whole number", budget_of(value, &o->fit_work) && o->fit_work == floor(o->fit_work);
     if (strcmp(name, "--radius") == 0)
         return *wants = "metres, or auto", radius_of(value, o);
     if (strcmp(name, "--estimate") == 0)
@@ -115,6 +127,8 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
         return VIT_OK;
     if (!out->input)
         return usage(why, "vitrine-bake", "which scene or mesh?");
+    if (out->fit > 0 && out->fit_work > 0)
+        return usage(why, "--fit-work", "one budget at a time, not --fit as well");
     if (!out->output && !out->explain)
         return usage(why, out->input, "where to? -o FILE.vit, or --explain");
     return VIT_OK;
@@ -147,11 +161,15 @@ void options_help(void) {
          "  vitrine-bake scene.cfg -o scene.vit      bake a scene file (bake/README.md has its grammar)\n"
          "  vitrine-bake model.glb -o model.vit      any mesh: framed by its box, turning camera, one moving light\n"
          "  vitrine-bake scene.cfg --explain         bake, write nothing, say what: effects and why, every buffer, total bytes\n"
+         "  vitrine-bake scene.cfg --fit 33 -o s.vit   the best quality that plays at 30 frames a second here\n"
          "\n"
          "  -o, --output FILE     the pack; written under another name first, so there is never half a pack\n"
          "  --explain             effects, bounds, buffers; with -o the pack is written too\n"
          "  --strict              a missing texture is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
+         "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
+         "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
+         "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"
          "  --threads N           of the baker (default: all cores); changes no byte\n"
          "  --device N            OpenCL device for measuring bounds and hashes (default 0); changes no byte\n"
          "  --quiet               warnings and errors only\n"

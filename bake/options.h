@@ -13,6 +13,8 @@ typedef struct options {
     int width, height, frames, photons, bounces, tile;
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
+    double fit;                /* milliseconds a frame, 0: none */
+    double fit_work;           /* work units a frame, a whole number, 0: none */
     const char *estimate, *smoothing, *kernel;
     int normal_keys;           /* -1: as the scene says */
 } options;

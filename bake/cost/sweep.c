@@ -1,6 +1,7 @@
 /* default pack -> reference -> settings -> pictures, work -> errors, a better reference if need be -> times -> front. */
 #include "sweep_parts.h"
 #include "front.h"
+#include "machine.h"
 #include "spread.h"
 #include <math.h>
 #include <stdio.h>
@@ -168,17 +169,9 @@ static void describe(sweep *s) {
     vit_text text;
     const char *device = vit_device_name(p->device, &text),
                *name = p->scene.name[0] ? p->scene.name : strrchr(p->scene.path, '/');
-    FILE *info = fopen("/proc/cpuinfo", "r");
-    char line[256];
     (void)snprintf(r->scene, sizeof r->scene, "%.*s", COST_NAME - 1, name ? name + (*name == '/') : p->scene.path);
     (void)snprintf(r->device, sizeof r->device, "%.*s", (int)sizeof r->device - 1, device ? device : "");
-    while (info && !r->cpu[0] && fgets(line, sizeof line, info)) {
-        const char *colon = strncmp(line, "model name", 10) == 0 ? strchr(line, ':') : NULL;
-        if (colon)
-            (void)snprintf(r->cpu, sizeof r->cpu, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
-    }
-    if (info)
-        (void)fclose(info);
+    machine_cpu(r->cpu, sizeof r->cpu);
     r->width = s->grid.width;
     r->height = s->grid.height;
     r->frame = s->frames[s->at];
