@@ -119,7 +119,7 @@
   }
   settings.forEach((setting, index) => option(by("setting"), index));
   by("setting").addEventListener("change", (e) => choose(Number(e.target.value)));
-  document.querySelectorAll("tr[data-setting]").forEach(function (row) {
+  document.querySelectorAll("tr[data-setting], .key li").forEach(function (row) {
     row.addEventListener("click", () => choose(Number(row.dataset.setting)));
   });
 
