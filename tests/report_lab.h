@@ -48,10 +48,6 @@ static inline void lab_setting(cost_results *r, uint32_t i, const char *knob, co
                                                    "splat lists",  "estimate",     "interpolate",  "resolve"};
     static const double shares[LAB_PASSES] = {0.18, 0.06, 0.14, 0.05, 0.03, 0.02, 0.02, 0.04, 0.08, 0.30, 0.03, 0.04};
     cost_setting *s = &r->settings[i];
-    (void)snprintf(s->name, sizeof s->name, "%s", name);
-    (void)snprintf(s->knob, sizeof s->knob, "%s", knob);
-    (void)snprintf(s->values, sizeof s->values,
-                   "photons = 17000; bounces = 4; radius = \"auto\"; tile = 32; estimate = \"list\"; %s;", name);
     *s = (cost_setting){.ms = ms,
                         .ms_p95 = ms * 1.05 + 0.3,
                         .ms_mad = 0.01 * ms,
