@@ -20,29 +20,34 @@ endif
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
-KERNELS := records.clh strict.clh lanes.clh random.clh scene.clh texture.clh ray.clh surface.clh visibility.cl samples.cl direct.cl \
+KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh surface.clh visibility.cl samples.cl direct.cl \
            photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl resolve.cl
 
 RUNTIME := $(wildcard runtime/*.c)
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)
 BAKE := $(wildcard bake/*.c)
 COST := $(wildcard bake/cost/*.c)
+COST_PARTS := $(filter-out bake/cost/main.c,$(COST))
 SCENES := $(wildcard bake/scenes/*.c)
 TESTS := $(wildcard tests/unit/*.c tests/golden/*.c tests/numeric/*.c tests/fuzz/*.c)
 BENCH := $(wildcard tests/bench/*.c)
 
 obj = $(patsubst %.c,$(B)/%.o,$(1))
+# All of vitrine-cost but its main.
+COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
 # Libraries. Embree 3 or 4, whichever is installed.
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
 LIBS_RUNTIME := -lOpenCL
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
+# Open MPI, if it is installed, spreads references over machines (bake/cost/spread.h).
+LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
 .DELETE_ON_ERROR:
-.PHONY: all tools help deps demo run-demo test bench clean install format
+.PHONY: all tools help deps demo run-demo cost run-cost test bench clean install format
 all: deps
 	@$(MAKE) --no-print-directory tools
-tools: $(B)/vitrine-play $(B)/vitrine-bake
+tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
 
 include tests/deps.mk
 
@@ -65,6 +70,9 @@ $(B)/report_files.o: $(B)/report_files.c
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
 $(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
 $(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
+ifneq ($(LIBS_COST),)
+$(B)/bake/cost/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
+endif
 $(B)/tests/%.o: CFLAGS_ALL += -Ibake -Iruntime -Itests -DVIT_EMBREE=$(EMBREE) -DVIT_BUILD_DIR='"$(B)"'
 $(B)/kernel_sources.o: $(B)/kernel_sources.c
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
@@ -77,8 +85,10 @@ $(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(B)/kernel_sources.o
 	$(AR) rcs $@ $^
 $(B)/vitrine-play: $(call obj,$(PLAY)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_PLAY) -o $@
-$(B)/vitrine-bake: $(call obj,$(BAKE)) $(B)/libvitrine.a
-	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(B)/vitrine-bake: $(call obj,$(BAKE)) $(COST_OBJECTS) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(B)/vitrine-cost: $(call obj,$(filter-out bake/main.c,$(BAKE)) bake/cost/main.c) $(COST_OBJECTS) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@
 
@@ -96,15 +106,27 @@ run-demo: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	done
 	@echo "pictures: build/demo/cornell/*.png build/demo/atrium/*.png   packs: build/demo/*.vit"
 
+# What accuracy costs, for our scenes: reports in build/cost.
+cost: deps
+	@$(MAKE) --no-print-directory run-cost
+run-cost: $(B)/vitrine-cost $(SCENES_MADE)
+	@mkdir -p build/cost
+	@set -e; for s in cornell atrium; do \
+	  echo "== $$s"; \
+	  $(B)/vitrine-cost $(B)/scenes/$$s.cfg -o build/cost/$$s; \
+	done
+	@echo "reports: build/cost/cornell/index.html build/cost/atrium/index.html"
+
 # The library, its header and the tools under $(prefix).
 install: all
 	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib $(DESTDIR)$(prefix)/include
-	install -m 755 $(B)/vitrine-play $(B)/vitrine-bake $(DESTDIR)$(prefix)/bin
+	install -m 755 $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(DESTDIR)$(prefix)/bin
 	install -m 644 $(B)/libvitrine.a $(DESTDIR)$(prefix)/lib
 	install -m 644 include/vitrine.h $(DESTDIR)$(prefix)/include
 
 help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
+	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"

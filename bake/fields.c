@@ -169,6 +169,53 @@ bool fields_read(const place *at, const config_setting_t *group, const field *fi
     return true;
 }
 
+/* The shortest digits that read back the same. */
+static void write_number(double value, char *text, size_t room) {
+    for (int digits = 6; digits <= 17; digits++) {
+        (void)snprintf(text, room, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+}
+
+size_t fields_write(const field *f, const void *from, char *text, size_t room) {
+    const void *value = (const char *)from + f->offset;
+    char word[64] = "";
+    switch (f->kind) {
+    case FIELD_NUMBER:
+        write_number(*(const double *)value, word, sizeof word);
+        break;
+    case FIELD_AUTO:
+        if (*(const double *)value > 0)
+            write_number(*(const double *)value, word, sizeof word);
+        else
+            (void)snprintf(word, sizeof word, "\"auto\"");
+        break;
+    case FIELD_WHOLE:
+        (void)snprintf(word, sizeof word, "%d", *(const int *)value);
+        break;
+    case FIELD_SWITCH:
+        (void)snprintf(word, sizeof word, "%s", *(const bool *)value ? "true" : "false");
+        break;
+    case FIELD_CHOICE: {
+        const char *bar = strchr(f->allowed, '|');
+        if (*(const bool *)value)
+            (void)snprintf(word, sizeof word, "\"%s\"", bar + 1);
+        else
+            (void)snprintf(word, sizeof word, "\"%.*s\"", (int)(bar - f->allowed), f->allowed);
+        break;
+    }
+    case FIELD_TEXT:
+    case FIELD_PATH:
+    case FIELD_VECTOR:
+    case FIELD_SCALE:
+    case FIELD_OTHER:
+        break;
+    }
+    const int used = word[0] ? snprintf(text, room, "%s = %s; ", f->name, word) : 0;
+    return used < 0 ? 0 : (size_t)used < room ? (size_t)used : room - 1;
+}
+
 bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list) {
     *list = config_setting_get_member(group, name);
     if (!*list)

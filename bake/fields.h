@@ -42,6 +42,10 @@ bool fields_fail(const place *at, const config_setting_t *setting, const char *f
  * seen: bit i is set if fields[i] was there. False: place.why says why. */
 bool fields_read(const place *at, const config_setting_t *group, const field *fields, int count, void *out, uint32_t *seen);
 
+/* The setting as it stands in a group: "name = value; ". Numbers are the shortest that read back the same. Returns the bytes written,
+ * fewer than `room`. For all kinds but texts and vectors. */
+size_t fields_write(const field *f, const void *from, char *text, size_t room);
+
 /* Member `name` of `group` as a list of groups. Absent: *list is NULL. False: it is something else, or longer than `most`. */
 bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list);
 

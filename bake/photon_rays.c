@@ -93,6 +93,44 @@ uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, 
     return q.triangle;
 }
 
+/* For any hit: does this one count? Called only in scenes with cut-outs. */
+static void accept_blocker(const struct RTCFilterFunctionNArguments *f) {
+    const query *q = (const query *)(const void *)f->context;
+    const struct RTCHit *hit = (const struct RTCHit *)(const void *)f->hit;
+    if (f->valid[0] == -1 && !photon_opaque_at(q->s, q->origin, q->direction, hit->primID))
+        f->valid[0] = 0;
+}
+
+bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, float distance) {
+    query q = {.s = r->s, .origin = origin, .direction = direction};
+    struct RTCRay ray = {.org_x = origin.x,
+                         .org_y = origin.y,
+                         .org_z = origin.z,
+                         .dir_x = direction.x,
+                         .dir_y = direction.y,
+                         .dir_z = direction.z,
+                         .tfar = distance,
+                         .mask = ~0u};
+#if VIT_EMBREE == 4
+    struct RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcInitRayQueryContext(&q.context);
+    arguments.context = &q.context;
+    rtcOccluded1(r->scene, &ray, &arguments);
+#else
+    rtcInitIntersectContext(&q.context);
+    rtcOccluded1(r->scene, &q.context, &ray);
+#endif
+    return ray.tfar < 0.0f;
+}
+
+static bool has_cutouts(const photon_scene *s) {
+    for (uint32_t i = 0; i < s->triangle_count; i++)
+        if (s->materials[s->attributes[i].material & VIT_MATERIAL_INDEX].cutout)
+            return true;
+    return false;
+}
+
 /* primID is the triangle's index. The vertices lie 16 bytes apart in vit_triangle. */
 static bool add_triangles(photon_rays *r) {
     const uint32_t triangles = r->s->triangle_count;
@@ -104,6 +142,8 @@ static bool add_triangles(photon_rays *r) {
         index[i] = (uint32_t)i;
     if (index) {
         rtcSetGeometryIntersectFilterFunction(mesh, accept_hit);
+        if (has_cutouts(r->s))
+            rtcSetGeometryOccludedFilterFunction(mesh, accept_blocker);
         rtcCommitGeometry(mesh);
         rtcAttachGeometry(r->scene, mesh);
         rtcCommitScene(r->scene);

@@ -1,4 +1,4 @@
-/* photon_rays.c: nearest hits by Embree, with the distances that kernels/ray.clh computes. */
+/* photon_rays.c: nearest and any hits by Embree, with the distances that kernels/ray.clh computes. */
 #ifndef VIT_BAKE_PHOTON_RAYS_H
 #define VIT_BAKE_PHOTON_RAYS_H
 
@@ -16,5 +16,7 @@ void photon_rays_close(photon_rays *r);
 /* Nearest opaque hit: its triangle and the distance in metres along the unit direction; VIT_NONE if there is none. Any number
  * of threads at once. The answer is a function of ray and triangles alone: of equally near triangles it is the first. */
 uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance);
+/* Is there an opaque hit within `distance` metres along the unit direction? Any number of threads at once. */
+bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, float distance);
 
 #endif

@@ -1,8 +1,7 @@
 #include "photon_surface.h"
 
-#define CONE                                                                                                                   \
-    0.02f /* metres of footprint a metre of distance, for the choice of mip level; PHOTON_CONE of kernels/photons.cl           \
-           */
+#define CONE 0.02f /* metres of footprint a metre of distance, for the choice of mip level; PHOTON_CONE of kernels/photons.cl  \
+                    */
 
 /* Signed edge functions of a triangle: weights of its vertices, not normalised; ray_edges() of kernels/ray.clh. */
 static void edge_weights(const vit_triangle *t, vec3 origin, vec3 direction, float weight[3]) {
@@ -65,8 +64,9 @@ static vec3 texture_color(const atlas *a, const vit_texture *texture, float s, f
     return vec3_along(top, vec3_sub(bottom, top), v);
 }
 
-/* Reflectance of the triangle at barycentric weights b. cosine: of the ray to the normal. */
-static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3], float doubled_area, float distance,
+/* Reflectance of the triangle at barycentric weights b. width: of the footprint across the ray, m; cosine: of the ray to the
+ * normal. */
+static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3], float doubled_area, float width,
                       float cosine) {
     const vit_attributes *at = s->attributes + triangle;
     const vit_material *m = s->materials + (at->material & VIT_MATERIAL_INDEX);
@@ -79,25 +79,33 @@ static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3]
                 t2 = at->uv[2][1];
     const float u = fmaf(b[2], s2, fmaf(b[1], s1, b[0] * s0)), v = fmaf(b[2], t2, fmaf(b[1], t1, b[0] * t0));
     const float uv_area = (s1 - s0) * (t2 - t0) - (s2 - s0) * (t1 - t0);
-    const float width = CONE * distance, footprint2 = width * width / float_max(cosine, 0.05f);
+    const float footprint2 = width * width / float_max(cosine, 0.05f);
     const int level = mip_level(footprint2, doubled_area, uv_area, (float)finest->width * (float)finest->height);
     return vec3_times(plain, texture_color(s->atlas, texture, u, v, level));
 }
 
-photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle) {
+photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
+                                   float cone, float b[3]) {
     const vit_triangle *t = s->triangles + triangle;
     float weight[3];
     edge_weights(t, origin, direction, weight);
     const float sum = weight[0] + weight[1] + weight[2];
     const float b1 = sum == 0.0f ? 0.333333333f : weight[1] / sum, b2 = sum == 0.0f ? 0.333333333f : weight[2] / sum;
-    const float b[3] = {1.0f - b1 - b2, b1, b2};
+    b[0] = 1.0f - b1 - b2;
+    b[1] = b1;
+    b[2] = b2;
     const vec3 n = {t->nx, t->ny, t->nz};
     const float doubled_area = sqrtf(vec3_dot(n, n)), facing = vec3_dot(n, direction);
     photon_surface r;
     r.face = vec3_scale(vec3_unit(n), facing > 0.0f ? -1.0f : 1.0f);
     r.position = vec3_along(vec3_along(origin, direction, distance), r.face, s->ray_offset);
-    r.albedo = albedo_at(s, triangle, b, doubled_area, distance, fabsf(facing) / float_max(doubled_area, 1e-30f));
+    r.albedo = albedo_at(s, triangle, b, doubled_area, cone * distance, fabsf(facing) / float_max(doubled_area, 1e-30f));
     return r;
+}
+
+photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle) {
+    float b[3];
+    return photon_surface_seen(s, origin, direction, distance, triangle, CONE, b);
 }
 
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {

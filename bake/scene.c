@@ -65,23 +65,52 @@ static bool read_output(reader *r, const config_setting_t *root) {
     return !group || fields_read(&r->at, group, output_fields, FIELD_COUNT(output_fields), r->s, &seen);
 }
 
-static bool read_quality(reader *r, const config_setting_t *root) {
-    const config_setting_t *group = config_setting_get_member(root, "quality");
-    quality_group g = {.q = r->s->quality};
+/* Puts the group's settings over *q. */
+static bool merge_quality(const place *at, const config_setting_t *group, scene_quality *q) {
+    quality_group g = {.q = *q, .flattened = q->flatten > 0};
     uint32_t seen = 0;
-    reader_at(r, "quality", -1);
-    if (group && !fields_read(&r->at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
+    if (!fields_read(at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
         return false;
     if (g.q.tile & (g.q.tile - 1))
-        return fields_fail(&r->at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
+        return fields_fail(at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
     if (g.q.raw && !g.q.buckets)
-        return fields_fail(&r->at, group, "smoothing \"raw\" needs estimate \"buckets\"");
+        return fields_fail(at, group, "smoothing \"raw\" needs estimate \"buckets\"");
     if ((seen & FIELD_BIT(QUALITY_FLATTEN)) && !g.flattened)
-        return fields_fail(&r->at, group, "'flatten' needs kernel \"flattened\"");
-    if (g.flattened && !(seen & FIELD_BIT(QUALITY_FLATTEN)))
+        return fields_fail(at, group, "'flatten' needs kernel \"flattened\"");
+    if (!g.flattened)
+        g.q.flatten = 0;
+    else if (!(g.q.flatten > 0))
         g.q.flatten = 15.0;
-    r->s->quality = g.q;
+    *q = g.q;
     return true;
+}
+
+static bool read_quality(reader *r, const config_setting_t *root) {
+    const config_setting_t *group = config_setting_get_member(root, "quality");
+    reader_at(r, "quality", -1);
+    return !group || merge_quality(&r->at, group, &r->s->quality);
+}
+
+vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why) {
+    const place at = {.path = "quality", .folder = "", .why = why};
+    config_t config;
+    config_init(&config);
+    bool fine = config_read_string(&config, text) == CONFIG_TRUE;
+    if (fine)
+        fine = merge_quality(&at, config_root_setting(&config), q);
+    else
+        (void)fields_fail(&at, NULL, "'%.200s': %s", text, config_error_text(&config));
+    config_destroy(&config);
+    return fine ? VIT_OK : VIT_BAD_INPUT;
+}
+
+void scene_quality_text(const scene_quality *q, char *text, size_t room) {
+    const quality_group g = {.q = *q, .flattened = q->flatten > 0};
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < FIELD_COUNT(quality_fields); i++)
+        if (i != QUALITY_FLATTEN || g.flattened)
+            used += fields_write(&quality_fields[i], &g, text + used, room - used);
 }
 
 /* Name between the quotes of an @include line; false if the line is none. */

@@ -132,7 +132,7 @@ typedef struct vit_statistics {
     uint32_t work_count;                                     /* kinds of work; 0 unless opened with count_work */
     const char *work_names[VIT_MAX_WORKS];
     int work_same[VIT_MAX_WORKS];                            /* 1: equal on every device; 0: compare at equal `lanes` only */
-    uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS];       /* last frame, exact */
+    uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS];       /* last frame, exact; kinds: VIT_WORKS in records.clh */
 } vit_statistics;
 
 typedef struct vit vit;

@@ -29,7 +29,7 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
 }
 
 kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
-                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct)
+                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -39,6 +39,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         return;
     lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
     lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+    WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
         lv3 to = lv3_sub(lv3_load(light->position), p);
@@ -49,11 +50,14 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         if (!l_any(lit))
             continue;
         ray_packet r = ray_make(p, l);
+        WORK_LANES(shadow_rays, lit);
         lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
+        WORK_TRACED(r);
         sum = lv3_along(sum, lv3_load(light->intensity), l_sel(lit, e, (lf)0));
     }
     lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), (lf)VIT_INV_PI);
     lv3 out = lv3_load_planes(direct, n, first);
     lv3_store_planes(lv3_set(fma(a.x, sum.x, out.x), fma(a.y, sum.y, out.y), fma(a.z, sum.z, out.z)), direct, n, first);
+    WORK_END
 }
 #endif

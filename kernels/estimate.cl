@@ -17,7 +17,7 @@ static inline lv3 estimate_normalise(lv3 sum)
 #if VIT_EFFECT_LIST
 kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global const uint *keys, global const float *position, global const uint *normal,
                           global const uint *masks, global const uint *prefix, global const uint *list_first, global const uint *list_count,
-                          global const uint *list, global const vit_photon *photons, global float *indirect)
+                          global const uint *list, global const vit_photon *photons, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -25,6 +25,7 @@ kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global 
     li key = L_AS_INT(L_LOAD(keys + first));
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    WORK_BEGIN
     if (l_any(rest)) {
         lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
         while (l_any(rest)) {
@@ -36,6 +37,7 @@ kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global 
                 continue;
             global const uint *at = list + list_first[cluster], *end = at + list_count[cluster];
             lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+            WORK_ADD(evaluations, (ulong)popcount(l_bits(own)) * (ulong)(end - at));
             for (; at < end; at++) {
                 global const vit_photon *q = photons + *at;
                 lv3 o = lv3_sub(p, lv3_load(q->position));
@@ -52,6 +54,7 @@ kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global 
         }
     }
     lv3_store_planes(total, indirect, n, first);
+    WORK_END
 }
 #endif
 
@@ -60,7 +63,7 @@ kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global 
 /* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. */
 kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
                              global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
-                             global const int *bounds, global const float *buckets, global float *indirect)
+                             global const int *bounds, global const float *buckets, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -68,6 +71,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
     li key = L_AS_INT(L_LOAD(keys + first));
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    WORK_BEGIN
     lv3 s = l_decode_normal(L_LOAD(normal + first));
     while (l_any(rest)) {
         uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
@@ -81,6 +85,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
             global const float *power = buckets + ((size_t)cluster * BUCKETS + b) * 4;
             if (!(power[3] > 0))
                 continue;
+            WORK_LANES(evaluations, own);
             uint face = b / 9;
             float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
             float x = face < 2 ? sign : u, y = face < 2 ? u : face < 4 ? sign : v, z = face < 4 ? v : sign;
@@ -91,6 +96,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
         total = lv3_sel(own, estimate_normalise(sum), total);
     }
     lv3_store_planes(total, indirect, n, first);
+    WORK_END
 }
 #else
 /* Irradiance of a cluster on a surface of normal s, x, y, z in scalar planes. An octant counts as far as it lies in front:
@@ -110,7 +116,7 @@ static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
  * near their centres are to the sample's tangent plane. Own tile and slice are always among them. */
 kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
                              global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
-                             global const int *bounds, global const float *buckets, global float *indirect)
+                             global const int *bounds, global const float *buckets, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -118,6 +124,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
     li key = L_AS_INT(L_LOAD(keys + first));
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    WORK_BEGIN
     if (l_any(rest)) {
         global const vit_camera *camera = cameras + frame;
         lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
@@ -159,6 +166,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
                 uint cluster = cluster_if_any(scene, masks, prefix, k);
                 if (cluster >= max_nodes)
                     continue;
+                WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
                 splat_box box = splat_node(bounds, max_nodes, cluster);
                 lv3 c = lv3_set((lf)(0.5f * (box.lo[0] + box.hi[0])), (lf)(0.5f * (box.lo[1] + box.hi[1])), (lf)(0.5f * (box.lo[2] + box.hi[2])));
                 lf off = lv3_dot(lv3_sub(c, p), s) / cell;
@@ -172,6 +180,7 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
         }
     }
     lv3_store_planes(total, indirect, n, first);
+    WORK_END
 }
 #endif
 #endif

@@ -73,7 +73,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
 
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
 kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global vit_photon *photons,
-                         volatile global uint *counters)
+                         volatile global uint *counters WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
@@ -94,6 +94,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         alive = L_LT(path, (lu)(light->path_first + light->path_count)) & L_GT(share, (lf)0);
     }
     uint stored = 0;
+    WORK_BEGIN
     for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
         lf t = (lf)3e38f;
         li triangle = (li)0;
@@ -101,10 +102,14 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         s.position = o;
         if (l_any(alive)) {
             ray_packet r = ray_make(o, d);
+            WORK_LANES(photon_rays, alive);
             ray_nearest(RAY_SCENE, &r, alive, &t, &triangle);
+            WORK_TRACED(r);
             alive &= L_NE(triangle, (li)(int)VIT_NONE);
             t = l_sel(alive, t, (lf)1);
             s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, (lf)PHOTON_CONE);
+            WORK_LANES(surface_points, alive);
+            WORK_LANES(texture_fetches, s.textured);
         }
         if (hit_number > 0) {
             photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius);
@@ -123,5 +128,6 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         o = s.position;
     }
     atomic_add(counters + VIT_COUNTER_photons, stored);
+    WORK_END
 }
 #endif

@@ -1,6 +1,6 @@
 /* Pass 2: view samples, what each pixel's ray found. */
 kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
-                    global const float *hit_distance, global float *position, global uint *normal, global uint *albedo, global float *direct)
+                    global const float *hit_distance, global float *position, global uint *normal, global uint *albedo, global float *direct WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -11,11 +11,14 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
     li hit = L_NE(triangle, (li)(int)VIT_NONE);
     lv3 light = lv3_load(scene->background);
+    WORK_BEGIN
+    WORK_LANES(surface_points, hit);
     if (l_any(hit)) {
         lv3 eye = lv3_load(camera->eye), d = l_camera_ray(camera, x, y);
         lf t = l_sel(hit, L_LOAD(hit_distance + first), (lf)1);
         float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
         surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, (lf)sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
+        WORK_LANES(texture_fetches, s.textured);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         lv3_store_planes(lv3_sel(hit, s.position, lv3_set((lf)0, (lf)0, (lf)0)), position, n, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), (lu)0), normal + first);
@@ -29,4 +32,5 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
     }
     /* Radiance that needs no light source: emission and background. Direct light is added to it. */
     lv3_store_planes(light, direct, n, first);
+    WORK_END
 }

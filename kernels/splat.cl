@@ -67,6 +67,7 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
  * with batch, used (photons in it), begin (of the batch in the list), c (of the node's children), child and box in scope. */
 #define SPLAT_OWNER                                                                                                              \
     local splat_batch batch;                                                                                                     \
+    WORK_BEGIN                                                                                                                   \
     uint chunk = (uint)get_group_id(0) % chunks, node = level_begin(scene, prefix, level) + (uint)get_group_id(0) / chunks;      \
     int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                               \
     uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                  \
@@ -83,7 +84,8 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
         uint used = min(chunk_end - begin, (uint)SPLAT_BATCH);                                                                   \
         for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {                                       \
             uint child = child_first + c;                                                                                        \
-            splat_box box = splat_node(bounds, max_nodes, child);
+            splat_box box = splat_node(bounds, max_nodes, child);                                                                \
+            WORK_ADD(node_tests, used);
 
 #define SPLAT_END                                                                                                                \
         }                                                                                                                        \
@@ -94,7 +96,7 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
 kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
                         global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
                         global const uint *list_first, global uint *list_count, global const uint *list, global uint *chunk_count,
-                        global const uint *counters)
+                        global const uint *counters WORK_PARAMETERS)
 {
     SPLAT_OWNER
     global uint *counts = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : list_count + child_first;
@@ -105,7 +107,9 @@ kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint leve
         for (uint i = 0; i < used; i += VIT_LANES)
             sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
         counts[c] += sum;
+        WORK_ADD(pairs, level + 1 == scene->levels ? sum : 0);
     SPLAT_END
+    WORK_END
 }
 
 /* Places the lists of the level's children one after another; what lies beyond max_list is dropped, the last entries first. One
@@ -159,7 +163,7 @@ kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_
 kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
                         global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
                         global const uint *list_first, global const uint *list_count, global uint *list, global uint *cursor,
-                        global uint *chunk_count, global const uint *counters)
+                        global uint *chunk_count, global const uint *counters WORK_PARAMETERS)
 {
     SPLAT_OWNER
     global uint *cursors = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : cursor + child_first; /* written so far */
@@ -174,6 +178,7 @@ kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint leve
         }
         cursors[c] = at - list_first[child];
     SPLAT_END
+    WORK_END
 }
 
 #if VIT_EFFECT_BUCKETS
@@ -201,7 +206,7 @@ static inline uint bucket_of(float x, float y, float z)
 kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
                           global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
                           global const uint *list_first, global uint *list_count, global const uint *list, volatile global uint *counters,
-                          global float *buckets)
+                          global float *buckets WORK_PARAMETERS)
 {
     uint pairs = 0;
     SPLAT_OWNER
@@ -238,7 +243,9 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
         }
         list_count[child] += sum;
         pairs += sum;
+        WORK_ADD(pairs, sum);
     SPLAT_END
+    WORK_END
     if (pairs > 0)
         atomic_add(counters + VIT_COUNTER_pairs, pairs);
     for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))

@@ -1,5 +1,5 @@
 /* Pass 1: the nearest triangle along each pixel's ray. */
-kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, uint frame, global uint *hit_triangle, global float *hit_distance)
+kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, uint frame, global uint *hit_triangle, global float *hit_distance WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
@@ -9,11 +9,15 @@ kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, u
     li inside = l_inside(scene, x, y);
     lf t = (lf)3e38f;
     li triangle = (li)(int)VIT_NONE;
+    WORK_BEGIN
+    WORK_LANES(view_rays, inside);
     if (l_any(inside)) {
         global const vit_camera *camera = cameras + frame;
         ray_packet r = ray_make(lv3_load(camera->eye), l_camera_ray(camera, x, y));
         ray_nearest(RAY_SCENE, &r, inside, &t, &triangle);
+        WORK_TRACED(r);
     }
     L_STORE(L_AS_UINT(triangle), hit_triangle + first);
     L_STORE(t, hit_distance + first);
+    WORK_END
 }

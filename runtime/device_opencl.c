@@ -105,8 +105,8 @@ void vit_device_suit(cl_device_id id, const vit_scene *s, vit_limits *l) {
 static int build_options(char *text, size_t size, const vit_limits *l) {
     int n = snprintf(text, size,
                      "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
-                     "-DVIT_EFFECT_DOTS=%d",
-                     l->lanes, (int)l->view, (int)l->format, (l->effects & ON_DOTS) != 0);
+                     "-DVIT_EFFECT_DOTS=%d -DVIT_COUNT_WORK=%d",
+                     l->lanes, (int)l->view, (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_WORK) != 0);
 #define X(bit, name, macro, why)                                                                                               \
     n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (l->effects >> bit) & 1);
     VIT_EFFECTS(X)
@@ -182,7 +182,10 @@ static vit_status set_arguments(vit_device *d, const vit_limits *l, vit_text *wh
             continue;
         for (uint32_t i = 0; vit_passes[p].args[i] != V_END; i++) {
             uint32_t a = vit_passes[p].args[i];
+            if (a == B_work && !vit_buffer_called(a, l))
+                break;
             uint32_t value = a == V_run ? l->run : a == V_max_nodes ? l->max_nodes : a == V_max_list ? l->max_list : 0;
+            value = a == V_pass ? p : value;
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
             if (e != CL_SUCCESS)

@@ -37,9 +37,22 @@ static vit_status enqueue(vit *v, uint32_t pass, uint32_t level, uint32_t frame,
     return after ? after(v, pass, level, user, why) : VIT_OK;
 }
 
+/* Work is counted from nothing each frame. */
+static vit_status clear_work(vit *v, vit_text *why) {
+    static const uint32_t zero = 0;
+    cl_mem work = v->device.buffers[B_work];
+    if (!work)
+        return VIT_OK;
+    size_t bytes = (size_t)vit_buffer_bytes(B_work, v->pack.scene, &v->limits);
+    cl_int e = clEnqueueFillBuffer(v->device.queue, work, &zero, sizeof zero, 0, bytes, 0, NULL, NULL);
+    return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, "clEnqueueFillBuffer", e);
+}
+
 /* Rows in order; a run of rows that repeat is walked once a level. */
 static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
     const vit_scene *s = v->pack.scene;
+    if (clear_work(v, why) != VIT_OK)
+        return VIT_FAILED;
     for (uint32_t p = 0, end; p < vit_pass_count; p = end) {
         end = p + 1;
         while (vit_passes[p].repeat != ONCE && vit_passes[p].repeat != UPWARD && end < vit_pass_count &&

@@ -33,6 +33,8 @@ static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
         l.max_list = info->max_list;
     if (info->view == VIT_VIEW_photons && (s->effects & ON(PHOTONS)))
         l.effects |= ON_DOTS;
+    if (info->count_work)
+        l.effects |= ON_WORK;
     return l;
 }
 

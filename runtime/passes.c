@@ -3,24 +3,25 @@
 
 #define W(name) ((uint64_t)1 << B_##name)
 #define RAY_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels, B_bvh
+#define WORK B_work, V_pass, V_END /* last, in passes that count on the device */
 #define SURFACE_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels
 
 const vit_pass vit_passes[] = {
-    {"visibility", ALWAYS, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance), {RAY_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, V_END}},
+    {"visibility", ALWAYS, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance), {RAY_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, WORK}},
     {"samples",
      ALWAYS,
      PER_SAMPLE,
      ONCE,
      W(position) | W(normal) | W(albedo) | W(direct),
-     {SURFACE_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, B_position, B_normal, B_albedo, B_direct, V_END}},
+     {SURFACE_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, B_position, B_normal, B_albedo, B_direct, WORK}},
     {"direct_light",
      ON(LIGHTS),
      PER_SAMPLE,
      ONCE,
      W(direct),
-     {RAY_SCENE, B_lights, V_frame, B_hit_triangle, B_position, B_normal, B_albedo, B_direct, V_END}},
+     {RAY_SCENE, B_lights, V_frame, B_hit_triangle, B_position, B_normal, B_albedo, B_direct, WORK}},
     {"clear_masks", ON(PHOTONS), PER_MASK_WORD, ONCE, W(masks) | W(counters), {B_scene, B_masks, B_counters, V_END}},
-    {"photon_paths", ON(TRACED), PER_PATH, ONCE, W(photons) | W(counters), {RAY_SCENE, B_lights, V_frame, B_photons, B_counters, V_END}},
+    {"photon_paths", ON(TRACED), PER_PATH, ONCE, W(photons) | W(counters), {RAY_SCENE, B_lights, V_frame, B_photons, B_counters, WORK}},
     {"cluster_keys",
      ON(PHOTONS),
      PER_RUN,
@@ -52,7 +53,7 @@ const vit_pass vit_passes[] = {
      LISTED,
      W(list_count),
      {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list,
-      B_chunk_count, B_counters, V_END}},
+      B_chunk_count, B_counters, WORK}},
     {"splat_place",
      ON(PHOTONS),
      ONE_GROUP,
@@ -65,26 +66,26 @@ const vit_pass vit_passes[] = {
      LISTED,
      W(list),
      {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_cursor,
-      B_chunk_count, B_counters, V_END}},
+      B_chunk_count, B_counters, WORK}},
     {"splat_buckets",
      ON(BUCKETS),
      GROUP_PER_LEVEL_NODE,
      LAST,
      W(buckets) | W(list_count) | W(counters),
      {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_counters,
-      B_buckets, V_END}},
+      B_buckets, WORK}},
     {"estimate_list",
      ON(LIST),
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons, B_indirect, V_END}},
+     {B_scene, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons, B_indirect, WORK}},
     {"estimate_buckets",
      ON(BUCKETS),
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, B_cameras, V_frame, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_bounds, B_buckets, B_indirect, V_END}},
+     {B_scene, B_cameras, V_frame, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_bounds, B_buckets, B_indirect, WORK}},
     {"dots_clear", ON_DOTS, PER_PIXEL, ONCE, W(dots), {B_scene, B_dots, V_END}},
     {"photon_dots", ON_DOTS, PER_PHOTON, ONCE, W(dots), {B_scene, B_cameras, V_frame, B_photons, B_hit_distance, B_dots, V_END}},
     {"resolve",
@@ -150,7 +151,7 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
         return name;
     VIT_EFFECTS(X)
 #undef X
-    return by & ON_DOTS ? "view photons" : "not called for";
+    return by & ON_DOTS ? "view photons" : by & ON_WORK ? "count_work" : "not called for";
 }
 
 static uint32_t level_words(const vit_scene *s, uint32_t level) {

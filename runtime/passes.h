@@ -8,11 +8,12 @@
 
 #define ON(macro) ((uint32_t)VIT_EFFECT_BIT_##macro)
 #define ON_DOTS 0x80000000u /* not an effect of the pack: the view `photons` */
+#define ON_WORK 0x40000000u /* likewise: vit_open_info.count_work */
 #define ALWAYS 0u
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
 typedef struct vit_limits {
-    uint32_t effects;          /* the pack's, and ON_DOTS */
+    uint32_t effects;          /* the pack's, ON_DOTS, ON_WORK */
     uint32_t max_nodes, max_list;
     vit_format format;
     vit_view view;
@@ -60,6 +61,7 @@ typedef struct vit_limits {
     X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
     X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
     X(counters, ALWAYS, NONE, 2 * VIT_COUNTER_COUNT * 4)                                                                         \
+    X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
     X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT
@@ -76,6 +78,7 @@ typedef enum vit_buffer {
     V_chunks,
     V_max_nodes,
     V_max_list,
+    V_pass,                    /* row of vit_passes */
     V_END
 } vit_buffer;
 
@@ -108,7 +111,8 @@ typedef struct vit_pass {
     vit_extent extent;
     vit_repeat repeat;
     uint64_t writes;           /* bits of vit_buffer */
-    uint8_t args[VIT_MAX_ARGS]; /* vit_buffer, up to V_END; a buffer that is not called for is passed as NULL */
+    uint8_t args[VIT_MAX_ARGS]; /* vit_buffer, up to V_END; a buffer that is not called for is passed as NULL, but
+                                * WORK at the end is no parameter of kernels that do not count */
 } vit_pass;
 
 extern const vit_pass vit_passes[];

@@ -1,14 +1,24 @@
 /* vit_stats: reads the counters back; not for the frame loop. */
 #include "vit.h"
+#include "work.h"
 #include <string.h>
 
+static vit_status read_buffer(vit *v, vit_buffer b, size_t bytes, void *out, vit_text *why) {
+    cl_int e = clEnqueueReadBuffer(v->device.queue, v->device.buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL);
+    return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, "reading the counters", e);
+}
+
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
-    uint32_t c[2 * VIT_COUNTER_COUNT];
+    uint32_t c[2 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];
     const uint32_t *total = c + VIT_COUNTER_COUNT;
     memset(out, 0, sizeof *out);
-    cl_int e = clEnqueueReadBuffer(v->device.queue, v->device.buffers[B_counters], CL_TRUE, 0, sizeof c, c, 0, NULL, NULL);
-    if (e != CL_SUCCESS)
-        return vit_cl_failed(why, "reading the counters", e);
+    vit_status status = read_buffer(v, B_counters, sizeof c, c, why);
+    if (status == VIT_OK && (v->limits.effects & ON_WORK))
+        status = read_buffer(v, B_work, sizeof work, work, why);
+    if (status != VIT_OK)
+        return status;
+    if (v->limits.effects & ON_WORK)
+        vit_work_read(work, v->pack.scene, &v->limits, c, out);
     const vit_photon *baked = v->pack.section[VIT_SECTION_PHOT];
     out->frames = v->frames;
     out->nodes = c[VIT_COUNTER_nodes];

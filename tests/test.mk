@@ -3,20 +3,18 @@ TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 # Sources, or names from the command line: make bench BENCH="rays open".
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
-COST_PARTS := $(filter-out bake/cost/main.c,$(wildcard bake/cost/*.c))
-COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
 SCENES_MADE := $(B)/scenes/atrium.obj
 
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write
 $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
-$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $^ $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS) $(COST_PARTS)) $(B)/libvitrine.a
+	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
@@ -29,7 +27,7 @@ test: deps
 SANITIZED := $(addprefix $(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
 run-sanitized: $(SANITIZED)
 	@for t in $(SANITIZED); do echo "== $$t"; $$t || exit 1; done
-run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(TEST_PROGRAMS)
+run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(TEST_PROGRAMS)
 	@for t in $(TEST_PROGRAMS); do echo "== $$t"; $$t || exit 1; done
 
 bench: deps

@@ -25,6 +25,7 @@ typedef struct cost_setting {
     cost_error total, indirect; /* against the bounce-limited reference */
     cost_error unlimited;      /* total light against the unlimited reference */
     float *image;              /* total light on the reference's grid: 3 floats a pixel, linear, exposed */
+    bool elsewhere;            /* differs from the default in what no quality block holds (output size, lanes): not for --fit, no front */
     bool front;                /* no other setting is at once faster and nearer to the reference, by ms and total.nmse */
     bool front_relmse;         /* likewise by total.relmse */
 } cost_setting;
@@ -35,6 +36,8 @@ typedef struct cost_results {
     uint32_t width, height;    /* of the frames timed */
     uint32_t frame, every;     /* frame compared, spacing of the compared pixels */
     reference reference;
+    cost_error direct;         /* the default's direct light against the reference's: what is no estimate's fault */
+    double direct_largest;     /* largest difference of one value / mean of the reference's direct light */
     cost_error truncation;     /* limited against unlimited reference: what `bounces` leaves out */
     double path_tracer_ms;     /* one path a pixel of the whole frame by the reference's path tracer, timed among the settings */
     double path_tracer_nmse;   /* its error at one path a pixel; falls as 1 / paths */

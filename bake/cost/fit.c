@@ -1,0 +1,124 @@
+#include "fit.h"
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Work units of one of a kind. Exact whole numbers, so that sums are equal everywhere; how they were found: README.md, Work
+ * units. */
+static const struct {
+    const char *kind;
+    uint64_t units;
+} weights[] = {
+    {"view_rays", 150}, {"shadow_rays", 120}, {"photon_rays", 1500},   {"node_tests", 40},
+    {"pairs", 100},     {"evaluations", 2},   {"texture_fetches", 50}, {"bytes", 1},
+};
+
+static uint64_t weight_of(const char *kind) {
+    for (size_t i = 0; i < sizeof weights / sizeof weights[0]; i++)
+        if (strcmp(weights[i].kind, kind) == 0)
+            return weights[i].units;
+    return 0;
+}
+
+uint64_t fit_work_units(const cost_setting *s, const char *const *names, uint32_t count) {
+    uint64_t units = 0;
+    for (uint32_t k = 0; k < count; k++)
+        for (uint32_t p = 0; p < s->pass_count; p++)
+            units += weight_of(names[k]) * s->pass_work[p][k];
+    return units;
+}
+
+static double price(const cost_setting *s, const fit_budget *b) {
+    return b->work > 0 ? (double)s->work : s->ms_p95;
+}
+
+static double error_of(const cost_setting *s, const fit_budget *b) {
+    return b->relmse ? s->total.relmse : s->total.nmse;
+}
+
+static bool fits(const cost_setting *s, const fit_budget *b) {
+    return b->work > 0 ? s->work <= b->work : s->ms_p95 <= b->ms;
+}
+
+/* Whether `s` is the better choice. */
+static bool better(const cost_setting *s, const cost_setting *than, const fit_budget *b) {
+    if (error_of(s, b) != error_of(than, b))
+        return error_of(s, b) < error_of(than, b);
+    return price(s, b) < price(than, b);
+}
+
+static vit_status refuse(const cost_results *r, const fit_budget *b, uint32_t closest, vit_text *why) {
+    if (closest == r->count)
+        snprintf(why->text, sizeof why->text, "no setting is left to choose from");
+    else if (b->work > 0)
+        snprintf(why->text, sizeof why->text,
+                 "no setting fits %" PRIu64 " work units a frame: the closest, '%s', takes %" PRIu64 ", %" PRIu64 " too many",
+                 b->work, r->settings[closest].name, r->settings[closest].work, r->settings[closest].work - b->work);
+    else
+        snprintf(why->text, sizeof why->text,
+                 "no setting fits %g ms: the closest, '%s', takes %.2f ms (95th percentile), %.2f ms too long", b->ms,
+                 r->settings[closest].name, r->settings[closest].ms_p95, r->settings[closest].ms_p95 - b->ms);
+    return VIT_BUDGET;
+}
+
+vit_status fit_choose(const cost_results *r, const fit_budget *b, const bool *leave_out, uint32_t *chosen, vit_text *why) {
+    uint32_t best = r->count, closest = r->count;
+    if (b->work > 0 && r->work_count == 0) {
+        snprintf(why->text, sizeof why->text, "this build counts no work: only a budget in milliseconds can be fitted");
+        return VIT_FAILED;
+    }
+    for (uint32_t i = 0; i < r->count; i++) {
+        const cost_setting *s = &r->settings[i];
+        if (s->elsewhere || (leave_out && leave_out[i]))
+            continue;
+        if (closest == r->count || price(s, b) < price(&r->settings[closest], b))
+            closest = i;
+        if (fits(s, b) && (best == r->count || better(s, &r->settings[best], b)))
+            best = i;
+    }
+    *chosen = best;
+    return best == r->count ? refuse(r, b, closest, why) : VIT_OK;
+}
+
+/* No other setting costs at most as much, in what the budget counts, and is at most as wrong. */
+static bool on_front(const cost_results *r, const fit_budget *b, uint32_t i) {
+    const cost_setting *s = &r->settings[i];
+    for (uint32_t k = 0; k < r->count; k++) {
+        const cost_setting *o = &r->settings[k];
+        if (k == i || o->elsewhere || price(o, b) > price(s, b) || error_of(o, b) > error_of(s, b))
+            continue;
+        if (price(o, b) < price(s, b) || error_of(o, b) < error_of(s, b) || k < i)
+            return false;
+    }
+    return !s->elsewhere;
+}
+
+/* The front's settings and the choice, cheapest first: order[0 .. result - 1]. */
+static uint32_t front_order(const cost_results *r, const fit_budget *b, uint32_t chosen, uint32_t *order) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < r->count; i++) {
+        if (i != chosen && !on_front(r, b, i))
+            continue;
+        uint32_t at = count++;
+        for (; at > 0 && price(&r->settings[order[at - 1]], b) > price(&r->settings[i], b); at--)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+    return count;
+}
+
+static void print_row(const cost_setting *s, bool chosen, FILE *to) {
+    (void)fprintf(to, "%c %8.2f %8.2f %14" PRIu64 " %9.5f %9.5f %+8.2f  %s\n", chosen ? '>' : ' ', s->ms, s->ms_p95, s->work,
+                  s->total.nmse, s->total.relmse, 100 * s->total.bias, s->name);
+}
+
+void fit_print(const cost_results *r, const fit_budget *b, uint32_t chosen, FILE *to) {
+    uint32_t *order = calloc((size_t)r->count + 1, sizeof *order);
+    if (!order)
+        return; /* a table less; the choice is said in any case */
+    const uint32_t count = front_order(r, b, chosen, order);
+    (void)fprintf(to, "  %8s %8s %14s %9s %9s %8s  %s\n", "ms", "p95 ms", "work units", "NMSE", "relMSE", "bias %", "setting");
+    for (uint32_t i = 0; i < count; i++)
+        print_row(&r->settings[order[i]], order[i] == chosen, to);
+    free(order);
+}

@@ -1,0 +1,27 @@
+/* fit.c: the most accurate setting that a budget allows. */
+#ifndef VIT_COST_FIT_H
+#define VIT_COST_FIT_H
+
+#include "results.h"
+#include <stdio.h>
+
+typedef struct fit_budget {
+    double ms;     /* > 0: the 95th percentile of a frame's milliseconds on the device measured */
+    uint64_t work; /* > 0: work units of a frame instead: the same choice on every machine */
+    bool relmse;   /* accurate by total.relmse, not total.nmse */
+} fit_budget;
+
+/* Work units of s->pass_work: the sum over the passes of exact counts, each kind times a small whole number (the table in
+ * fit.c; about a tenth of a nanosecond on the CPU that they were measured on). Kinds that depend on the lane width count
+ * nothing. `names`: of the `count` kinds, as vit_statistics has them. */
+uint64_t fit_work_units(const cost_setting *s, const char *const *names, uint32_t count);
+
+/* Index of the most accurate setting within the budget, among those that a quality block can hold and that `leave_out` (one
+ * flag a setting, NULL: none) does not; of equally accurate ones the cheaper, then the first. VIT_BUDGET: none fits; the text
+ * names the one that misses by least and by how much. VIT_FAILED: work was not counted. */
+vit_status fit_choose(const cost_results *r, const fit_budget *budget, const bool *leave_out, uint32_t *chosen, vit_text *why);
+
+/* The front and the choice as a table of plain text. */
+void fit_print(const cost_results *r, const fit_budget *budget, uint32_t chosen, FILE *to);
+
+#endif

@@ -1,0 +1,137 @@
+/* vitrine-cost: scene -> sweep -> report, choice. */
+#include "cost_options.h"
+#include "fit.h"
+#include "report.h"
+#include "rewrite.h"
+#include "spread.h"
+#include "sweep.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Set by Ctrl-C and SIGTERM; the sweep looks at it between steps, and unfinished references are kept. */
+static volatile sig_atomic_t cancel;
+
+static void on_signal(int number) {
+    (void)number;
+    cancel = 1;
+}
+
+/* The first Ctrl-C ends cleanly after the step at hand; a second one at once. */
+static void catch_signals(void) {
+    struct sigaction stop = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
+}
+
+/* Makes the default cache folder; NULL: there is no home for it. */
+static const char *default_cache(char *folder, size_t room) {
+    const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    const bool xdg = base && base[0] == '/';
+    if (!xdg && !(home && home[0] == '/'))
+        return NULL;
+    const int used = snprintf(folder, room, "%s%s", xdg ? base : home, xdg ? "" : "/.cache");
+    if (used < 0 || (size_t)used + 9 >= room)
+        return NULL;
+    (void)mkdir(folder, 0777);
+    (void)snprintf(folder + used, room - (size_t)used, "/vitrine");
+    return mkdir(folder, 0777) == 0 || errno == EEXIST ? folder : NULL;
+}
+
+static uint64_t memory_of(const cost_options *o) {
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    if (o->memory > 0)
+        return (uint64_t)o->memory << 20;
+    return pages > 0 && page > 0 ? (uint64_t)pages / 4 * (uint64_t)page : (uint64_t)1 << 30;
+}
+
+static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
+    p->strict = o->strict;
+    p->threads = o->threads;
+    p->device = o->device;
+    vit_status status = pipeline_read(o->input, &p->scene, why);
+    if (status != VIT_OK)
+        return status;
+    if (o->width) {
+        p->scene.width = o->width;
+        p->scene.height = o->height;
+    }
+    return pipeline_load(p, why);
+}
+
+static vit_status fit(const cost_options *o, const cost_results *r, vit_text *why) {
+    const fit_budget budget = {.ms = o->fit, .work = (uint64_t)o->fit_work, .relmse = o->relmse};
+    uint32_t chosen;
+    vit_status status = fit_choose(r, &budget, NULL, &chosen, why);
+    if (status == VIT_OK || status == VIT_BUDGET)
+        fit_print(r, &budget, chosen, stdout);
+    if (status != VIT_OK)
+        return status;
+    printf("\n%s\nquality: { %s};\n", r->settings[chosen].name, r->settings[chosen].values);
+    return o->write ? rewrite_file(o->write, r->settings[chosen].values, why) : VIT_OK;
+}
+
+static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_text *why) {
+    char folder[4096];
+    const sweep_input in = {.pipeline = p,
+                            .knobs = o->knobs,
+                            .settings = o->settings,
+                            .frame = o->frame,
+                            .every = o->every,
+                            .repeats = o->repeats,
+                            .reference_error = o->reference_error,
+                            .max_samples = o->max_samples,
+                            .cache = o->no_cache ? NULL
+                                     : o->cache  ? o->cache
+                                                 : default_cache(folder, sizeof folder),
+                            .memory = memory_of(o),
+                            .cancel = &cancel};
+    vit_status status = o->write ? rewrite_check(o->write, why) : VIT_OK; /* before the work rather than after it */
+    if (status == VIT_OK)
+        status = load(o, p, why);
+    if (status == VIT_OK)
+        status = sweep_run(&in, r, why);
+    if (status != VIT_OK || r->count == 0)
+        return status;
+    if (o->output) {
+        progress_stage(p->progress, "report");
+        status = report_write(r, o->output, why);
+        progress_end(p->progress);
+    }
+    return status == VIT_OK && (o->fit > 0 || o->fit_work > 0) ? fit(o, r, why) : status;
+}
+
+int main(int argc, char **argv) {
+    cost_options o;
+    cost_results r = {.count = 0};
+    pipeline p;
+    vit_text why = {""};
+    memset(&p, 0, sizeof p);
+    spread_begin(&argc, &argv);
+    vit_status status = cost_options_parse(argc, argv, &o, &why);
+    const bool talks = spread_rank() == 0;
+    progress line = progress_make(o.quiet || !talks);
+    p.progress = &line;
+    if (status == VIT_OK && o.help && talks)
+        cost_options_help();
+    else if (status == VIT_OK && o.version && talks)
+        puts("vitrine-cost " VIT_VERSION);
+    else if (status == VIT_OK && !o.help && !o.version) {
+        catch_signals();
+        status = run(&o, &p, &r, &why);
+        progress_end(&line);
+    }
+    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout))) {
+        snprintf(why.text, sizeof why.text, "standard output: write failed");
+        status = VIT_FAILED;
+    }
+    if (status != VIT_OK && (talks || spread_size() == 1))
+        fprintf(stderr, "vitrine-cost: %s\n", why.text);
+    sweep_free(&r);
+    pipeline_free(&p);
+    spread_end();
+    return status;
+}

@@ -1,0 +1,40 @@
+/* Low-discrepancy points in the unit square: the first two dimensions of Sobol's sequence with Owen's scrambling by hashing,
+ * the order shuffled a pair of dimensions, so that pairs can be joined to more dimensions. Burley, "Practical Hash-based Owen
+ * Scrambling", JCGT 10(4), 2020, sections 3 and 4; the hash is its equation for Laine and Karras's permutation. */
+#ifndef VIT_COST_SEQUENCE_H
+#define VIT_COST_SEQUENCE_H
+
+#include "photon_math.h"
+
+static inline uint32_t sequence_reverse(uint32_t v) {
+    v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
+    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+    v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
+    v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
+    return (v >> 16) | (v << 16);
+}
+
+/* Owen's scrambling of a number whose bits are reversed: each bit is flipped by a hash of the bits below it. */
+static inline uint32_t sequence_permute(uint32_t v, uint32_t seed) {
+    v += seed;
+    v ^= v * 0x6c50b47cu;
+    v ^= v * 0xb82f1e52u;
+    v ^= v * 0xc7afe638u;
+    v ^= v * 0x8d22f6e6u;
+    return v;
+}
+
+/* Point i of the set of `count` (a power of two) that `seed` names: each set is stratified, different seeds are independent. */
+static inline void sequence_point(uint32_t seed, uint32_t i, uint32_t count, float *u, float *v) {
+    const uint32_t shuffled = sequence_reverse(sequence_permute(sequence_reverse(i), seed)) & (count - 1);
+    uint32_t second = 0; /* Sobol's second dimension; the first is the reversed index */
+    for (uint32_t bits = shuffled, column = 0x80000000u; bits; bits >>= 1, column ^= column >> 1)
+        if (bits & 1u)
+            second ^= column;
+    const uint32_t first = sequence_permute(shuffled, pcg(seed ^ 0x9e3779b9u)); /* reversed twice */
+    second = sequence_permute(sequence_reverse(second), pcg(seed ^ 0x85ebca6bu));
+    *u = unit_float(sequence_reverse(first));
+    *v = unit_float(sequence_reverse(second));
+}
+
+#endif

@@ -1,0 +1,146 @@
+#define _POSIX_C_SOURCE 200809L
+#include "state.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define METHOD 1u /* raise when the same input gives other bits than before */
+#define ROOM 4096 /* bytes of a path */
+
+typedef struct cache_header {
+    char magic[8];
+    uint64_t key, rays, sums_hash;
+    double seconds;
+    uint32_t width, height, batches, zero;
+} cache_header;
+
+static const char magic[8] = "VITREF1";
+
+/* META's part that the picture depends on, and the settings. */
+typedef struct key_settings {
+    uint32_t method, batch, frame, every, bounces, width, height, direct_only[64];
+    float ray_offset, box_pad, background[3];
+} key_settings;
+
+static key_settings settings_of(const reference_input *in) {
+    const vit_scene *s = in->sections->data[VIT_SECTION_META];
+    key_settings k;
+    memset(&k, 0, sizeof k); /* padding, if any, is hashed too */
+    k.method = METHOD;
+    k.batch = REFERENCE_BATCH;
+    k.frame = in->frame;
+    k.every = in->every;
+    k.bounces = in->bounces;
+    k.width = s->width;
+    k.height = s->height;
+    k.ray_offset = s->ray_offset;
+    k.box_pad = s->box_pad;
+    memcpy(k.background, s->background, sizeof k.background);
+    for (uint32_t i = 0; in->direct_only && i < s->lights; i++)
+        k.direct_only[i % 64] = k.direct_only[i % 64] * 2 + in->direct_only[i];
+    return k;
+}
+
+/* The frame's lights; who traces their photons is no matter. */
+static uint64_t hash_lights(const reference_input *in) {
+    const vit_scene *s = in->sections->data[VIT_SECTION_META];
+    const vit_light *lights = in->sections->data[VIT_SECTION_LITE];
+    uint64_t hash = 0;
+    for (uint32_t i = 0; i < s->lights; i++) {
+        struct {
+            uint64_t before;
+            vit_light light;
+        } link = {hash, lights[(size_t)in->frame * s->lights + i]};
+        link.light.path_first = link.light.path_count = 0;
+        hash = vit_hash(&link, sizeof link);
+    }
+    return hash;
+}
+
+uint64_t state_key(const reference_input *in) {
+    const void *const *data = in->sections->data;
+    const vit_scene *s = data[VIT_SECTION_META];
+    const key_settings settings = settings_of(in);
+    const uint64_t parts[] = {vit_hash(&settings, sizeof settings),
+                              hash_lights(in),
+                              vit_hash((const vit_camera *)data[VIT_SECTION_CAMS] + in->frame, sizeof(vit_camera)),
+                              vit_hash(data[VIT_SECTION_GEOM], s->triangles * sizeof(vit_triangle)),
+                              vit_hash(data[VIT_SECTION_ATTR], s->triangles * sizeof(vit_attributes)),
+                              vit_hash(data[VIT_SECTION_MATL], s->materials * sizeof(vit_material)),
+                              vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
+                              vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
+                              vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32))};
+    return vit_hash(parts, sizeof parts);
+}
+
+vit_status state_folder(const char *folder, vit_text *why) {
+    char path[ROOM];
+    if (snprintf(path, sizeof path, "%s", folder) < (int)sizeof path) {
+        for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+            *slash = '\0';
+            mkdir(path, 0777);
+            *slash = '/';
+        }
+        mkdir(path, 0777);
+        if (access(path, W_OK | X_OK) == 0)
+            return VIT_OK;
+    }
+    snprintf(why->text, sizeof why->text, "%.400s: cannot keep references in this folder: %s", folder, strerror(errno));
+    return VIT_FAILED;
+}
+
+static bool file_name(const reference_state *s, const char *folder, char path[ROOM]) {
+    const int length = snprintf(path, ROOM, "%s/%016llx.reference", folder, (unsigned long long)s->key);
+    return length > 0 && length < ROOM;
+}
+
+static bool fits(const cache_header *h, const reference_state *s) {
+    return memcmp(h->magic, magic, sizeof magic) == 0 && h->key == s->key && h->width == s->width && h->height == s->height &&
+           h->batches > 0 && h->batches <= UINT32_MAX / REFERENCE_BATCH;
+}
+
+void state_load(reference_state *s, const char *folder) {
+    char path[ROOM];
+    cache_header h;
+    FILE *f = file_name(s, folder, path) ? fopen(path, "rb") : NULL;
+    const size_t size = s->pixels * sizeof *s->sums;
+    pixel_sums *sums = malloc(size);
+    if (f && sums && fread(&h, sizeof h, 1, f) == 1 && fits(&h, s) && fread(sums, 1, size, f) == size && fgetc(f) == EOF &&
+        vit_hash(sums, size) == h.sums_hash) {
+        memcpy(s->sums, sums, size);
+        s->batches = h.batches;
+        s->rays = h.rays;
+        s->seconds = h.seconds;
+    }
+    free(sums);
+    if (f)
+        (void)fclose(f);
+}
+
+vit_status state_save(const reference_state *s, const char *folder, vit_text *why) {
+    const size_t size = s->pixels * sizeof *s->sums;
+    cache_header h = {.key = s->key,
+                      .rays = s->rays,
+                      .sums_hash = vit_hash(s->sums, size),
+                      .seconds = s->seconds,
+                      .width = s->width,
+                      .height = s->height,
+                      .batches = s->batches};
+    char path[ROOM];
+    unsigned char *file = malloc(sizeof h + size);
+    vit_status status = VIT_FAILED;
+    memcpy(h.magic, magic, sizeof magic);
+    if (!file || !file_name(s, folder, path))
+        snprintf(why->text, sizeof why->text, "reference: %s",
+                 file ? "the cache's folder has too long a name" : "out of memory");
+    else {
+        memcpy(file, &h, sizeof h);
+        memcpy(file + sizeof h, s->sums, size);
+        status = pack_save(path, file, sizeof h + size, why);
+    }
+    free(file);
+    return status;
+}

@@ -1,0 +1,248 @@
+/* default pack -> reference -> settings -> pictures, work -> errors, a better reference if need be -> times -> front. */
+#include "sweep_parts.h"
+#include "front.h"
+#include "spread.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FIRST_ERROR 1e-3 /* NMSE of a first reference, from which the smallest error of a setting is judged */
+#define MOST_REFERENCES 4
+
+bool sweep_cancelled(const sweep *s, vit_text *why) {
+    if (s->in->cancel && *s->in->cancel)
+        snprintf(why->text, sizeof why->text, "interrupted");
+    return s->in->cancel && *s->in->cancel;
+}
+
+static vit_status fail(vit_status status, vit_text *why, const char *cause) {
+    snprintf(why->text, sizeof why->text, "%s", cause);
+    return status;
+}
+
+/* Evenly spread over the path, ascending; the one nearest to the compared frame gives way to it. */
+static vit_status choose_frames(sweep *s, vit_text *why) {
+    const uint32_t all = (uint32_t)s->in->pipeline->scene.frames, count = all < SWEEP_FRAMES ? all : SWEEP_FRAMES;
+    const int64_t want = s->in->frame < 0 ? all / 2 : s->in->frame;
+    if (want >= all) {
+        snprintf(why->text, sizeof why->text, "--frame: the path has frames 0 to %u", all - 1);
+        return VIT_USAGE;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        s->frames[i] = count > 1 ? (uint32_t)((uint64_t)i * (all - 1) / (count - 1)) : 0;
+        if (llabs((int64_t)s->frames[i] - want) < llabs((int64_t)s->frames[s->at] - want))
+            s->at = i;
+    }
+    s->frames[s->at] = (uint32_t)want;
+    s->frame_count = count;
+    return VIT_OK;
+}
+
+static vit_status choose_grid(sweep *s, vit_text *why) {
+    const scene *c = &s->in->pipeline->scene;
+    const uint32_t shorter = (uint32_t)(c->width < c->height ? c->width : c->height);
+    s->grid =
+        (images_grid){.width = (uint32_t)c->width, .height = (uint32_t)c->height, .every = s->in->every ? s->in->every : 1};
+    while (s->in->every == 0 && (uint64_t)images_across(&s->grid) * images_down(&s->grid) > SWEEP_GRID)
+        s->grid.every++;
+    s->points = (size_t)images_across(&s->grid) * images_down(&s->grid);
+    if (s->grid.every / 2 < shorter)
+        return VIT_OK;
+    return fail(VIT_USAGE, why, "--every: no pixel of so small a frame is compared");
+}
+
+static vit_status pack_default(sweep *s, vit_text *why) {
+    pipeline *p = s->in->pipeline;
+    pipeline_choice choice = pipeline_default(p);
+    choice.frames = s->frames;
+    choice.frame_count = s->frame_count;
+    vit_status status = pipeline_pack(p, &choice, &s->base, why);
+    if (status != VIT_OK)
+        return status;
+    s->direct_only = calloc(s->base.tracks.light_count + 1u, sizeof *s->direct_only);
+    if (!s->direct_only)
+        return fail(VIT_FAILED, why, "out of memory");
+    for (uint32_t i = 0; i < s->base.tracks.light_count; i++)
+        s->direct_only[i] = !p->scene.automatic && !p->scene.lights[i].photons;
+    return VIT_OK;
+}
+
+static void reference_step(void *user, double fraction, double seconds_left) {
+    (void)seconds_left; /* the line estimates it as well */
+    progress_step(user, fraction);
+}
+
+static vit_status make_reference(sweep *s, double target, vit_text *why) {
+    reference *r = &s->out->reference;
+    const reference_input in = {.sections = &s->base.sections,
+                                .direct_only = s->direct_only,
+                                .frame = s->at,
+                                .every = s->grid.every,
+                                .bounces = s->base.plan.scene.bounces,
+                                .target = target,
+                                .max_samples = s->in->max_samples,
+                                .threads = s->in->pipeline->threads,
+                                .cache = s->in->cache,
+                                .cancel = s->in->cancel,
+                                .progress = reference_step,
+                                .user = s->progress};
+    progress_stage(s->progress, "reference");
+    reference_free(r);
+    vit_status status = reference_render(&in, r, why);
+    progress_end(s->progress);
+    if (status == VIT_OK)
+        progress_line(s->progress, false, "reference: %u paths a pixel, NMSE of its own error %.2g", r->samples, r->error);
+    if (status == VIT_OK && (r->width != images_across(&s->grid) || r->height != images_down(&s->grid)))
+        return fail(VIT_FAILED, why, "the reference has another size than the grid");
+    return status;
+}
+
+static vit_status list_settings(sweep *s, vit_text *why) {
+    const vit_scene *c = &s->base.plan.scene;
+    const scene_quality *q = &s->in->pipeline->scene.quality;
+    const knobs_input in = {.base = q, .radius = (double)c->radius, .only = s->in->knobs, .most = s->in->settings};
+    cost_results *r = s->out;
+    vit_status status = knobs_settings(&in, &s->knobs, &r->count, why);
+    if (status != VIT_OK)
+        return status;
+    r->settings = calloc(r->count, sizeof *r->settings);
+    s->packs = calloc(r->count, sizeof *s->packs);
+    s->indirect = calloc(r->count, sizeof *s->indirect);
+    if (!r->settings || !s->packs || !s->indirect)
+        return fail(VIT_FAILED, why, "out of memory");
+    for (uint32_t i = 0; i < r->count; i++) {
+        cost_setting *to = &r->settings[i];
+        memcpy(to->name, s->knobs[i].name, sizeof to->name);
+        memcpy(to->knob, s->knobs[i].knob, sizeof to->knob);
+        scene_quality_text(&s->knobs[i].quality, to->values, sizeof to->values);
+        to->elsewhere = !knobs_in_quality(&s->knobs[i]);
+    }
+    return VIT_OK;
+}
+
+/* Errors mean something when the reference's own is below a tenth of the smallest: what it must fall below, 0 if it has. */
+static double better_target(const sweep *s) {
+    const double least = sweep_smallest_error(s), own = s->out->reference.error;
+    const bool more = s->out->reference.samples < s->in->max_samples;
+    return s->in->reference_error > 0 || !more || own <= least / 10 ? 0
+                                                                    : least / 12; /* a little less: the error falls as well */
+}
+
+static void say_reference(const sweep *s) {
+    const double least = sweep_smallest_error(s), own = s->out->reference.error;
+    const cost_results *r = s->out;
+    if (own > least / 10)
+        progress_line(s->progress, true,
+                      "warning: the reference's own error, NMSE %.2g, is more than a tenth of the smallest error, %.2g: more "
+                      "--max-samples, or a "
+                      "smaller --reference-error",
+                      own, least);
+    progress_line(s->progress, false,
+                  "direct light against the reference: NMSE %.2g, largest difference %.2g of the mean; bounce limit: NMSE %.2g",
+                  r->direct.nmse, r->direct_largest, r->truncation.nmse);
+}
+
+/* Rank 0 says how good the reference must be, until it is; all ranks make it. */
+static vit_status compare(sweep *s, vit_text *why) {
+    const bool first_rank = spread_rank() == 0;
+    double target = s->in->reference_error > 0 ? s->in->reference_error : FIRST_ERROR;
+    vit_status status = VIT_OK;
+    for (int round = 0; round < MOST_REFERENCES && target > 0; round++) {
+        status = make_reference(s, target, why);
+        if (spread_any(status != VIT_OK))
+            return status != VIT_OK ? status : fail(VIT_FAILED, why, "another rank failed");
+        if (first_rank && round == 0)
+            status = sweep_pictures(s, why);
+        if (first_rank && status == VIT_OK)
+            status = sweep_errors(s, why);
+        target = first_rank && status == VIT_OK ? better_target(s) : 0;
+        spread_share(&target, sizeof target);
+    }
+    return status;
+}
+
+static void describe(sweep *s) {
+    const pipeline *p = s->in->pipeline;
+    cost_results *r = s->out;
+    vit_text text;
+    const char *device = vit_device_name(p->device, &text),
+               *name = p->scene.name[0] ? p->scene.name : strrchr(p->scene.path, '/');
+    FILE *info = fopen("/proc/cpuinfo", "r");
+    char line[256];
+    (void)snprintf(r->scene, sizeof r->scene, "%.*s", COST_NAME - 1, name ? name + (*name == '/') : p->scene.path);
+    (void)snprintf(r->device, sizeof r->device, "%.*s", (int)sizeof r->device - 1, device ? device : "");
+    while (info && !r->cpu[0] && fgets(line, sizeof line, info)) {
+        const char *colon = strncmp(line, "model name", 10) == 0 ? strchr(line, ':') : NULL;
+        if (colon)
+            (void)snprintf(r->cpu, sizeof r->cpu, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+    }
+    if (info)
+        (void)fclose(info);
+    r->width = s->grid.width;
+    r->height = s->grid.height;
+    r->frame = s->frames[s->at];
+    r->every = s->grid.every;
+}
+
+static vit_status run(sweep *s, vit_text *why) {
+    vit_status status = choose_frames(s, why);
+    if (status == VIT_OK)
+        status = choose_grid(s, why);
+    describe(s);
+    if (status == VIT_OK)
+        status = pack_default(s, why);
+    if (status == VIT_OK && spread_rank() == 0)
+        status = list_settings(s, why);
+    if (spread_any(status != VIT_OK))
+        return status != VIT_OK ? status : fail(VIT_FAILED, why, "another rank failed");
+    status = compare(s, why);
+    const bool first_rank = spread_rank() == 0;
+    spread_end(); /* the other ranks must not take time from what is timed */
+    if (status != VIT_OK || !first_rank)
+        return status;
+    status = sweep_compare_direct(s, why);
+    if (status == VIT_OK) {
+        progress_end(s->progress);
+        say_reference(s);
+    }
+    if (status == VIT_OK && s->in->repeats > 0)
+        status = sweep_times(s, why);
+    if (status == VIT_OK)
+        front_mark(s->out);
+    return status;
+}
+
+vit_status sweep_run(const sweep_input *in, cost_results *out, vit_text *why) {
+    sweep s = {.in = in, .progress = in->pipeline->progress, .out = out};
+    memset(out, 0, sizeof *out);
+    vit_status status = run(&s, why);
+    progress_end(s.progress);
+    for (uint32_t i = 0; i < out->count; i++) {
+        if (s.packs)
+            sweep_drop_pack(&s, i);
+        if (s.indirect)
+            free(s.indirect[i]);
+    }
+    free(s.packs);
+    free(s.indirect);
+    free(s.knobs);
+    free(s.direct_only);
+    pipeline_packed_free(&s.base);
+    if (status != VIT_OK)
+        sweep_free(out);
+    return status;
+}
+
+void sweep_free(cost_results *r) {
+    for (uint32_t i = 0; i < r->count && r->settings; i++)
+        free(r->settings[i].image);
+    free(r->settings);
+    reference_free(&r->reference);
+    memset(r, 0, sizeof *r);
+}
+
+vit_status sweep_quality(const cost_setting *s, scene_quality *out, vit_text *why) {
+    *out = (scene_quality){.photons = 1, .bounces = 1, .tile = 8}; /* all of it is overwritten */
+    return scene_quality_apply(s->values, out, why);
+}

@@ -1,0 +1,39 @@
+/* sweep.c: what each setting of a scene costs and how near it comes to the reference. */
+#ifndef VIT_COST_SWEEP_H
+#define VIT_COST_SWEEP_H
+
+#include "pipeline.h"
+#include "results.h"
+#include <signal.h>
+
+#define SWEEP_FRAMES 7 /* frames of the path that are played, evenly spread, the compared one among them */
+#define SWEEP_LEAST_REPEATS 7
+#define SWEEP_GRID 60000 /* grid points, at most, if `every` is left open */
+
+typedef struct sweep_input {
+    pipeline *pipeline; /* loaded; its device and threads are used */
+    const char *knobs;  /* names with commas between; NULL: all */
+    uint32_t settings;  /* at most, the default included; >= 1 */
+    int64_t frame;      /* of the scene's path, compared with the reference; < 0: the middle one */
+    uint32_t every;     /* the grid's spacing, pixels; 0: so that it has at most SWEEP_GRID points */
+    uint32_t repeats;   /* frames timed a setting, >= SWEEP_LEAST_REPEATS; 0: times are not measured */
+    double
+        reference_error;  /* NMSE that the reference's standard error must fall below; 0: a tenth of the smallest error found */
+    uint32_t max_samples; /* of the reference, paths a pixel */
+    const char *cache;    /* reference_input.cache */
+    uint64_t memory;      /* bytes that the packs, and the buffers of what is open at once, may take; 2 settings in any case */
+    const volatile sig_atomic_t *cancel;
+} sweep_input;
+
+/* Packs every setting, compares it with the reference (all ranks of an MPI run make that one together), counts its work, and
+ * times all in turns. Settings that differ in lanes alone must have the default's bits. Under MPI only rank 0 gets settings;
+ * the others return VIT_OK with out->count == 0 as soon as the reference is good, and rank 0 times alone: spread_end() has been
+ * called by then. VIT_MISMATCH: bits differ that must not. VIT_USAGE: a knob, the frame or `every`. VIT_FAILED: also when
+ * cancelled. */
+vit_status sweep_run(const sweep_input *in, cost_results *out, vit_text *why);
+void sweep_free(cost_results *r);
+
+/* The quality block of a setting. */
+vit_status sweep_quality(const cost_setting *s, scene_quality *out, vit_text *why);
+
+#endif

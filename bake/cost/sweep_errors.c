@@ -1,0 +1,50 @@
+/* Errors of all settings against the reference. */
+#include "sweep_parts.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* direct + indirect. NULL: out of memory. */
+static double *sum_of(const double *direct, const double *indirect, size_t values) {
+    double *sum = calloc(values, sizeof *sum);
+    for (size_t i = 0; sum && i < values; i++)
+        sum[i] = direct[i] + indirect[i];
+    return sum;
+}
+
+static void compare_all(sweep *s, const double *limited, const double *unlimited) {
+    cost_results *r = s->out;
+    const uint32_t width = r->reference.width, height = r->reference.height;
+    for (uint32_t i = 0; i < r->count; i++) {
+        cost_setting *c = &r->settings[i];
+        c->total = metrics_compare(limited, c->image, NULL, width, height);
+        c->unlimited = metrics_compare(unlimited, c->image, NULL, width, height);
+        c->indirect = metrics_compare(r->reference.limited, s->indirect[i], limited, width, height);
+    }
+}
+
+vit_status sweep_errors(sweep *s, vit_text *why) {
+    const reference *r = &s->out->reference;
+    const size_t values = 3 * s->points;
+    double *limited = sum_of(r->direct, r->limited, values), *unlimited = sum_of(r->direct, r->unlimited, values);
+    float *picture = calloc(values, sizeof *picture);
+    const bool fine = limited && unlimited && picture;
+    if (fine) {
+        compare_all(s, limited, unlimited);
+        for (size_t i = 0; i < values; i++)
+            picture[i] = (float)limited[i];
+        s->out->truncation = metrics_compare(unlimited, picture, NULL, r->width, r->height);
+    } else
+        snprintf(why->text, sizeof why->text, "out of memory");
+    free(limited);
+    free(unlimited);
+    free(picture);
+    return fine ? VIT_OK : VIT_FAILED;
+}
+
+double sweep_smallest_error(const sweep *s) {
+    double least = INFINITY;
+    for (uint32_t i = 0; i < s->out->count; i++)
+        least = fmin(least, s->out->settings[i].total.nmse);
+    return least;
+}

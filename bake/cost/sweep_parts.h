@@ -1,0 +1,49 @@
+/* What the files of a sweep share. */
+#ifndef VIT_COST_SWEEP_PARTS_H
+#define VIT_COST_SWEEP_PARTS_H
+
+#include "images.h"
+#include "knobs.h"
+#include "sweep.h"
+
+/* A setting's pack; bytes NULL: not kept, to be made again. */
+typedef struct sweep_pack {
+    void *bytes;
+    size_t size;
+} sweep_pack;
+
+typedef struct sweep {
+    const sweep_input *in;
+    progress *progress; /* the caller's; packs are made with a quiet one */
+    cost_results *out;
+    uint32_t frames[SWEEP_FRAMES], frame_count;
+    uint32_t at; /* the compared frame among frames[] */
+    images_grid grid;
+    size_t points;        /* of the grid */
+    pipeline_packed base; /* the default's: the reference reads it */
+    bool *direct_only;    /* a light: photons = false */
+    knob_setting *knobs;  /* one a setting, as out->settings */
+    sweep_pack *packs;
+    uint64_t kept;    /* bytes of packs */
+    float **indirect; /* a setting: its indirect light on the grid */
+} sweep;
+
+bool sweep_cancelled(const sweep *s, vit_text *why);
+
+/* sweep_packs.c: the pack of setting i, made again if it was not kept. */
+vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why);
+void sweep_drop_pack(sweep *s, uint32_t i);
+/* Pack, bytes, images and work of every setting. */
+vit_status sweep_pictures(sweep *s, vit_text *why);
+/* Fills out->direct from the default's direct light. */
+vit_status sweep_compare_direct(sweep *s, vit_text *why);
+
+/* sweep_times.c: ms of every setting, and the path tracer's. */
+vit_status sweep_times(sweep *s, vit_text *why);
+
+/* sweep_errors.c: errors of every setting against the reference as it stands. */
+vit_status sweep_errors(sweep *s, vit_text *why);
+/* The smallest total NMSE of any setting. */
+double sweep_smallest_error(const sweep *s);
+
+#endif

@@ -1,0 +1,129 @@
+/* Times of all settings: in turns, as many open at once as the memory allows, the default in every batch. */
+#include "sweep_parts.h"
+#include "timing.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a batch holds: the default first, then settings first .. end - 1. */
+typedef struct batch {
+    uint32_t first, end;
+    timing_entry *entries;
+    double *ms; /* repeats a setting */
+    double *pass_ms;
+    uint32_t *setting; /* an entry: its setting */
+    uint32_t count;
+} batch;
+
+static uint64_t bytes_of(const cost_setting *c) {
+    return c->device_bytes + c->pack_bytes;
+}
+
+/* At least one setting beside the default. */
+static uint32_t batch_end(const sweep *s, uint32_t first) {
+    uint64_t bytes = bytes_of(&s->out->settings[0]);
+    uint32_t end = first;
+    while (end < s->out->count && (end == first || bytes + bytes_of(&s->out->settings[end]) <= s->in->memory))
+        bytes += bytes_of(&s->out->settings[end++]);
+    return end;
+}
+
+static void batch_free(batch *b) {
+    free(b->entries);
+    free(b->ms);
+    free(b->pass_ms);
+    free(b->setting);
+}
+
+static vit_status batch_fill(sweep *s, batch *b, vit_text *why) {
+    const size_t most = (size_t)(b->end - b->first) + 1, repeats = s->in->repeats;
+    b->entries = calloc(most, sizeof *b->entries);
+    b->ms = calloc(most * repeats, sizeof *b->ms);
+    b->pass_ms = calloc(most * repeats * VIT_MAX_PASSES, sizeof *b->pass_ms);
+    b->setting = calloc(most, sizeof *b->setting);
+    if (!b->entries || !b->ms || !b->pass_ms || !b->setting) {
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    for (uint32_t i = 0; i < b->end; i = i == 0 ? b->first : i + 1) {
+        vit_status status = sweep_take_pack(s, i, why);
+        if (status != VIT_OK)
+            return status;
+        b->setting[b->count] = i;
+        b->entries[b->count] = (timing_entry){.name = s->knobs[i].name,
+                                              .pack = s->packs[i].bytes,
+                                              .pack_size = s->packs[i].size,
+                                              .lanes = s->knobs[i].lanes,
+                                              .ms = b->ms + b->count * repeats,
+                                              .pass_ms = b->pass_ms + b->count * repeats * VIT_MAX_PASSES};
+        b->count++;
+    }
+    return VIT_OK;
+}
+
+/* Drift between batches: all times of one are multiplied by what makes its default as fast as the first batch's. */
+static void note_times(sweep *s, const batch *b, uint32_t entry, double scale) {
+    const timing_entry *e = &b->entries[entry];
+    cost_setting *c = &s->out->settings[b->setting[entry]];
+    const uint32_t n = s->in->repeats;
+    double *pass = calloc(n, sizeof *pass);
+    for (uint32_t p = 0; pass && p < e->pass_count; p++) {
+        for (uint32_t r = 0; r < n; r++)
+            pass[r] = e->pass_ms[(size_t)r * VIT_MAX_PASSES + p];
+        c->pass_ms[p] = scale * timing_median(pass, n);
+        (void)snprintf(c->pass_names[p], sizeof c->pass_names[p], "%s", e->pass_names[p]);
+    }
+    free(pass);
+    c->pass_count = e->pass_count;
+    c->timed = n;
+    c->ms = scale * timing_median(e->ms, n);
+    c->ms_p95 = scale * timing_percentile(e->ms, n, 95);
+    c->ms_mad = scale * timing_deviation(e->ms, n); /* last: it changes the values */
+}
+
+static void step(void *user, double fraction) {
+    progress_step(user, fraction);
+}
+
+static vit_status time_batch(sweep *s, batch *b, vit_text *why) {
+    char label[64];
+    vit_status status = batch_fill(s, b, why);
+    if (status != VIT_OK)
+        return status;
+    snprintf(label, sizeof label, "times: settings %u to %u", b->first, b->end - 1);
+    progress_stage(s->progress, label);
+    const timing_input in = {.entries = b->entries,
+                             .count = b->count,
+                             .device = s->in->pipeline->device,
+                             .repeats = s->in->repeats,
+                             .progress = step,
+                             .user = s->progress,
+                             .cancel = s->in->cancel};
+    status = timing_measure(&in, why);
+    progress_end(s->progress);
+    if (status != VIT_OK)
+        return status;
+    const double first = s->out->settings[0].ms;
+    const bool anchored = b->first > 1;
+    double scale = 1;
+    if (anchored)
+        scale = first / timing_median(b->entries[0].ms, s->in->repeats);
+    for (uint32_t i = anchored ? 1 : 0; i < b->count; i++)
+        note_times(s, b, i, scale);
+    return VIT_OK;
+}
+
+vit_status sweep_times(sweep *s, vit_text *why) {
+    vit_status status = VIT_OK;
+    for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < s->out->count);) {
+        batch b = {.first = first, .end = batch_end(s, first)};
+        if (b.end < first)
+            b.end = first;
+        status = time_batch(s, &b, why);
+        for (uint32_t i = b.first; i < b.end; i++)
+            sweep_drop_pack(s, i);
+        batch_free(&b);
+        first = b.end > first ? b.end : first + 1;
+    }
+    return status;
+}

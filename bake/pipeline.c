@@ -1,0 +1,187 @@
+/* import -> tracks -> BVH -> geometry -> reach -> atlas | plan -> photons -> bounds -> pack. Data flows one way. */
+#include "pipeline.h"
+#include "bounds.h"
+#include "photons.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static vit_status out_of_memory(vit_text *why) {
+    snprintf(why->text, sizeof why->text, "out of memory");
+    return VIT_FAILED;
+}
+
+static void warn(void *user, const char *line) {
+    progress_line(user, true, "warning: %s", line);
+}
+
+static void step(void *user, double fraction) {
+    progress_step(user, fraction);
+}
+
+vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
+    const char *dot = strrchr(path, '.');
+    return dot && strcmp(dot, ".cfg") == 0 ? scene_read(path, out, why) : scene_for_mesh(path, out, why);
+}
+
+vit_status pipeline_load(pipeline *p, vit_text *why) {
+    const uint32_t frames = (uint32_t)p->scene.frames;
+    progress_stage(p->progress, "import");
+    vit_status status = model_import(&p->scene, p->strict, warn, p->progress, &p->model, why);
+    if (status == VIT_OK)
+        status = tracks_evaluate(&p->scene, &p->model, &p->tracks, why);
+    if (status != VIT_OK)
+        return status;
+    progress_stage(p->progress, "BVH");
+    status = bvh_build(&p->model, p->threads, &p->bvh, why);
+    if (status == VIT_OK)
+        status = geometry_pack(&p->model, &p->bvh, &p->geometry, why);
+    if (status == VIT_OK) {
+        progress_stage(p->progress, "sides that light can reach");
+        status = reach_dark_sides(&p->model, &p->tracks, frames, &p->geometry, p->threads, step, p->progress, &p->reach, why);
+    }
+    if (status == VIT_OK) {
+        progress_stage(p->progress, "atlas");
+        status = atlas_pack(&p->model, &p->atlas, why);
+    }
+    return status;
+}
+
+void pipeline_free(pipeline *p) {
+    atlas_free(&p->atlas);
+    geometry_free(&p->geometry);
+    bvh_free(&p->bvh);
+    tracks_free(&p->tracks);
+    model_free(&p->model);
+    scene_free(&p->scene);
+}
+
+pipeline_choice pipeline_default(const pipeline *p) {
+    return (pipeline_choice){.quality = p->scene.quality, .width = p->scene.width, .height = p->scene.height};
+}
+
+static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_text *why) {
+    photons_light *lights = calloc(out->tracks.light_count + 1u, sizeof *lights);
+    uint32_t count = 0;
+    vit_status status = VIT_OK;
+    if (!lights)
+        return out_of_memory(why);
+    for (uint32_t i = 0; i < out->tracks.light_count; i++)
+        if (out->plan.baked_paths[i] > 0)
+            lights[count++] = (photons_light){out->tracks.lights[i], out->plan.baked_paths[i]};
+    if (count > 0) {
+        progress_stage(p->progress, "photons of still lights");
+        photons_input in = {.triangles = p->geometry.triangles,
+                            .attributes = p->geometry.attributes,
+                            .triangle_count = p->model.triangles,
+                            .materials = out->plan.materials,
+                            .atlas = &p->atlas,
+                            .ray_offset = p->geometry.ray_offset,
+                            .box_pad = out->plan.scene.box_pad,
+                            .first_path = out->plan.scene.paths,
+                            .radius = out->plan.scene.radius,
+                            .bounces = out->plan.scene.bounces,
+                            .lights = lights,
+                            .light_count = count,
+                            .progress = step,
+                            .user = p->progress};
+        status = photons_bake(&in, p->threads, &out->photons, &out->plan.scene.baked, why);
+    }
+    free(lights);
+    return status;
+}
+
+static void measuring(void *user, const char *stage, double fraction) {
+    progress *p = user;
+    if (p->stage != stage)
+        progress_stage(p, stage);
+    progress_step(p, fraction);
+}
+
+/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. */
+static vit_status settle_radius(bounds_input *in, pipeline_packed *out, vit_text *why) {
+    double stored;
+    vit_status status = bounds_count_photons(in, &stored, why);
+    if (status == VIT_OK && stored > 0)
+        plan_set_radius(&out->plan, plan_radius(&out->plan, stored), out->photons);
+    return status;
+}
+
+/* Keeps the chosen frames' cameras and lights. */
+static void cut_frames(const pipeline_choice *c, pipeline_packed *out) {
+    tracks *t = &out->tracks;
+    if (!c->frames)
+        return;
+    for (uint32_t i = 0; i < c->frame_count; i++) { /* ascending: a frame moves towards the front */
+        t->cameras[i] = t->cameras[c->frames[i]];
+        for (uint32_t k = 0; k < t->light_count; k++)
+            t->lights[(size_t)i * t->light_count + k] = t->lights[(size_t)c->frames[i] * t->light_count + k];
+    }
+    out->plan.scene.frames = c->frame_count;
+}
+
+static void point_sections(const pipeline *p, pipeline_packed *out) {
+    out->sections = (pack_sections){.data = {[VIT_SECTION_META] = &out->plan.scene,
+                                             [VIT_SECTION_CAMS] = out->tracks.cameras,
+                                             [VIT_SECTION_LITE] = out->tracks.lights,
+                                             [VIT_SECTION_GEOM] = p->geometry.triangles,
+                                             [VIT_SECTION_ATTR] = p->geometry.attributes,
+                                             [VIT_SECTION_BVHN] = p->bvh.nodes,
+                                             [VIT_SECTION_MATL] = out->plan.materials,
+                                             [VIT_SECTION_TEXR] = p->atlas.textures,
+                                             [VIT_SECTION_MIPS] = p->atlas.mips,
+                                             [VIT_SECTION_ATLS] = p->atlas.texels,
+                                             [VIT_SECTION_PHOT] = out->photons,
+                                             [VIT_SECTION_GOLD] = out->gold}};
+}
+
+static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_packed *out, vit_text *why) {
+    out->gold = calloc(out->plan.scene.frames, sizeof *out->gold);
+    if (!out->gold)
+        return out_of_memory(why);
+    point_sections(p, out);
+    bounds_input in = {.sections = &out->sections,
+                       .scene = &out->plan.scene,
+                       .gold = out->gold,
+                       .device = p->device,
+                       .all_formats = p->all_formats,
+                       .progress = measuring,
+                       .user = p->progress};
+    vit_status status = VIT_OK;
+    if ((out->plan.scene.effects & VIT_EFFECT_BIT_PHOTONS) && !(c->quality.radius > 0))
+        status = settle_radius(&in, out, why);
+    cut_frames(c, out);
+    if (status == VIT_OK)
+        status = bounds_measure(&in, why);
+    if (status == VIT_OK)
+        status = pack_assemble(&out->sections, &out->bytes, &out->size, why);
+    return status;
+}
+
+vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_packed *out, vit_text *why) {
+    scene s = p->scene; /* borrows its lists */
+    memset(out, 0, sizeof *out);
+    s.quality = choice->quality;
+    s.width = choice->width;
+    s.height = choice->height;
+    vit_status status = tracks_evaluate(&s, &p->model, &out->tracks, why);
+    if (status == VIT_OK)
+        status = plan_make(&s, &p->model, &out->tracks, &p->atlas, &p->bvh, &p->geometry, &p->reach, &out->plan, why);
+    if (status == VIT_OK)
+        status = trace_photons(p, out, why);
+    if (status == VIT_OK)
+        status = measure(p, choice, out, why);
+    progress_end(p->progress);
+    if (status != VIT_OK)
+        pipeline_packed_free(out);
+    return status;
+}
+
+void pipeline_packed_free(pipeline_packed *packed) {
+    free(packed->bytes);
+    free(packed->gold);
+    free(packed->photons);
+    plan_free(&packed->plan);
+    tracks_free(&packed->tracks);
+    memset(packed, 0, sizeof *packed);
+}

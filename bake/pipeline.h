@@ -1,0 +1,59 @@
+/* pipeline.c: from a scene to a pack. pipeline_load() makes what does not depend on the quality block, once; pipeline_pack()
+ * makes a pack of it for one quality block, size and list of frames, as often as needed. */
+#ifndef VIT_BAKE_PIPELINE_H
+#define VIT_BAKE_PIPELINE_H
+
+#include "atlas.h"
+#include "bvh.h"
+#include "pack_write.h"
+#include "planner.h"
+#include "progress.h"
+#include "reach.h"
+#include "tracks.h"
+
+/* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
+typedef struct pipeline {
+    scene scene;
+    bool strict;      /* a missing texture is an error */
+    bool all_formats; /* golden hashes of RGB565 and RGBA32F frames too */
+    unsigned threads; /* 0: all cores; changes no byte */
+    uint32_t device;  /* OpenCL device that measures bounds and hashes; changes no byte */
+    progress *progress;
+    model model;   /* made by pipeline_load() from here on */
+    tracks tracks; /* at the scene's own size */
+    bvh bvh;
+    geometry geometry;
+    reach reach;
+    atlas atlas;
+} pipeline;
+
+typedef struct pipeline_choice {
+    scene_quality quality;
+    int width, height;      /* pixels */
+    const uint32_t *frames; /* frames of the scene's path to bake, ascending; NULL: all */
+    uint32_t frame_count;
+} pipeline_choice;
+
+/* A pack and what it was made of. */
+typedef struct pipeline_packed {
+    plan plan;
+    tracks tracks; /* of the frames that were chosen */
+    vit_photon *photons;
+    vit_gold *gold;
+    pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */
+    void *bytes;            /* the pack */
+    size_t size;
+} pipeline_packed;
+
+/* Reads a scene file (.cfg), or makes a scene for a bare mesh. */
+vit_status pipeline_read(const char *path, scene *out, vit_text *why);
+vit_status pipeline_load(pipeline *p, vit_text *why);
+void pipeline_free(pipeline *p);
+
+/* What the scene itself says. */
+pipeline_choice pipeline_default(const pipeline *p);
+/* A chosen frame has the bits that it has in the pack of all frames. On failure nothing is left to free. */
+vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_packed *out, vit_text *why);
+void pipeline_packed_free(pipeline_packed *packed);
+
+#endif

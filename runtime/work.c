@@ -1,0 +1,115 @@
+#include "work.h"
+#include <string.h>
+
+/* Formulas of bytes, a row a pass: X(pass, bytes). The model, which knows no caches, lanes, groups or chunks:
+ *  - planes of samples, masks and records that a pass walks over count whole, padding and empty slots included;
+ *  - records that are looked up count once a lookup: triangle, attributes and material at a hit, four texels a texture lookup,
+ *    index and 28 bytes of a photon a test against a node, index and photon (or bucket) an evaluation;
+ *  - traversal of the BVH counts nothing: its order is the packets' own. Nor do counters, the bits that samples set, the chunks
+ *    of the root's list, the pixels of dots.
+ * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
+#define PASS_BYTES(X)                                                                                                          \
+    X(visibility, (4 + 4) * z->samples)                                                                                        \
+    X(samples, (4 + 4 + 12 + 4 + 4 + 12) * z->samples + HITS)                                                                  \
+    X(direct_light, (4 + 12 + 4 + 4 + 12 + 12) * z->samples + z->lights)                                                       \
+    X(clear_masks, 4 * z->masks)                                                                                               \
+    X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + HITS)                                                         \
+    X(cluster_keys, (4 + 12 + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
+    X(number_nodes, (4 + 4) * z->masks)                                                                                        \
+    X(make_nodes, (4 + 4) * z->masks + (4 + 4 + BOX) * z->nodes)                                                               \
+    X(cluster_bounds, (4 + 12 + 4) * z->samples + BOX * (z->nodes - z->inner))                                                 \
+    X(node_bounds, (4 + 4 + BOX) * z->inner + BOX * (z->nodes - 1))                                                            \
+    X(splat_count, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4) * z->listed)                                                  \
+    X(splat_place, (4 + 4 + 4) * z->listed)                                                                                    \
+    X(splat_write, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + 4) * z->listed + 4 * z->entries)                             \
+    X(splat_buckets,                                                                                                           \
+      (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
+    X(estimate_list, (4 + 12 + 4 + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
+    X(estimate_buckets, (4 + 12 + 4 + 12) * z->samples + 16 * w[VIT_WORK_evaluations] + BOX * (w[VIT_WORK_evaluations] / 8))   \
+    X(dots_clear, 4 * z->pixels)                                                                                               \
+    X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
+    X(resolve, z->shown * z->samples + z->pixel * z->pixels)                                                                   \
+    X(account, (4 + 4 + 4) * (uint64_t)VIT_COUNTER_COUNT)
+
+#define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
+#define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
+#define BOX 48 /* of positions and of normals */
+
+typedef struct sizes {
+    uint64_t samples, pixels, masks, photons, traced; /* numbers of records; traced: photon slots that paths fill */
+    uint64_t nodes, inner, listed; /* nodes, of those that there is room for: all, with children, with a list but the root */
+    uint64_t entries;              /* list entries kept */
+    uint64_t lights, bucket;       /* bytes: of a frame's lights, of a cluster's buckets */
+    uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
+} sizes;
+
+/* What resolve reads a sample: the hit, and what the view shows; the second column with photons in the pack. */
+static uint64_t shown_bytes(const vit_limits *l) {
+    static const uint8_t bytes[][2] = {
+        [VIT_VIEW_final] = {16, 32},   [VIT_VIEW_direct] = {16, 16},  [VIT_VIEW_indirect] = {4, 20},
+        [VIT_VIEW_clusters] = {4, 12}, [VIT_VIEW_photons] = {16, 32}, [VIT_VIEW_heat] = {4, 20},
+        [VIT_VIEW_normals] = {8, 8},   [VIT_VIEW_depth] = {8, 8},     [VIT_VIEW_albedo] = {8, 8},
+    };
+    return bytes[l->view][(l->effects & ON(PHOTONS)) != 0];
+}
+
+_Static_assert(VIT_WORK_COUNT <= VIT_MAX_WORKS, "vitrine.h has room for every kind of work");
+
+static uint64_t least(uint64_t a, uint64_t b) {
+    return a < b ? a : b;
+}
+
+static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c) {
+    sizes z = {.samples = s->samples,
+               .pixels = (uint64_t)s->width * s->height,
+               .masks = s->mask_words,
+               .photons = s->photons,
+               .traced = s->photons - s->baked,
+               .lights = s->lights * sizeof(vit_light),
+               .bucket = VIT_BUCKETS_OF(l) * 16,
+               .shown = shown_bytes(l),
+               .pixel = vit_format_bytes(l->format) + (l->effects & ON_DOTS ? 4u : 0u)};
+    if (l->effects & ON(PHOTONS)) {
+        z.nodes = least(c[VIT_COUNTER_nodes], l->max_nodes);
+        z.inner = least(c[VIT_COUNTER_nodes] - c[VIT_COUNTER_clusters], z.nodes);
+        z.listed = (l->effects & ON(LIST) ? z.nodes : z.inner) - 1;
+        z.entries = least(c[VIT_COUNTER_list], l->max_list);
+    }
+    return z;
+}
+
+static uint64_t pass_bytes(const char *name, const sizes *z, const uint64_t *w) {
+#define X(pass, bytes)                                                                                                         \
+    if (strcmp(name, #pass) == 0)                                                                                              \
+        return bytes;
+    PASS_BYTES(X)
+#undef X
+    return 0;
+}
+
+void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_limits *l, const uint32_t *c, vit_statistics *out) {
+    static const char *const names[] = {
+#define X(name, same, what) #name,
+        VIT_WORKS(X)
+#undef X
+    };
+    static const int same[] = {
+#define X(name, is_same, what) is_same,
+        VIT_WORKS(X)
+#undef X
+    };
+    const sizes z = sizes_of(s, l, c);
+    uint32_t row = 0;
+    out->work_count = VIT_WORK_COUNT;
+    memcpy(out->work_names, names, sizeof names);
+    memcpy(out->work_same, same, sizeof same);
+    for (uint32_t p = 0; p < vit_pass_count; p++) {
+        if (!vit_pass_called(p, l))
+            continue;
+        const uint32_t *at = words + (size_t)p * VIT_WORK_COUNT * 2;
+        uint64_t *w = out->pass_work[row++];
+        for (uint32_t k = 0; k < VIT_WORK_COUNT; k++)
+            w[k] = (uint64_t)at[2 * k + 1] << 32 | at[2 * k];
+        w[VIT_WORK_bytes] = pass_bytes(vit_passes[p].name, &z, w);
+    }
+}

@@ -1,0 +1,102 @@
+/* Many packs from one import. What is stated: a frame that was chosen has the bits that it has among all frames, whatever
+ * radius "auto" finds; a pack does not depend on the packs made before it; and another size is what that size bakes to on its
+ * own. */
+#include "pipeline.h"
+#include "test_packs.h"
+
+typedef struct lab {
+    progress progress;
+    pipeline pipeline;
+    vit_text why;
+} lab;
+
+static void lab_open(lab *l, int width, int height) {
+    memset(l, 0, sizeof *l);
+    l->progress = progress_make(true);
+    l->pipeline.progress = &l->progress;
+    test_packs_begin();
+    if (pipeline_read(TEST_PACKS "/room.cfg", &l->pipeline.scene, &l->why) != VIT_OK)
+        fail_msg("%s", l->why.text);
+    l->pipeline.scene.width = width;
+    l->pipeline.scene.height = height;
+    l->pipeline.scene.frames = 6;
+    l->pipeline.scene.quality.radius = 0; /* auto */
+    if (pipeline_load(&l->pipeline, &l->why) != VIT_OK)
+        fail_msg("%s", l->why.text);
+}
+
+static void pack(lab *l, const pipeline_choice *choice, pipeline_packed *out) {
+    if (pipeline_pack(&l->pipeline, choice, out, &l->why) != VIT_OK)
+        fail_msg("%s", l->why.text);
+}
+
+static void a_chosen_frame_has_the_bits_that_it_has_among_all(void **state) {
+    const uint32_t frames[] = {0, 3, 5};
+    lab l;
+    pipeline_packed all, some;
+    (void)state;
+    lab_open(&l, 96, 64);
+    pipeline_choice choice = pipeline_default(&l.pipeline);
+    pack(&l, &choice, &all);
+    choice.frames = frames;
+    choice.frame_count = 3;
+    pack(&l, &choice, &some);
+    assert_int_equal(some.plan.scene.frames, 3);
+    assert_memory_equal(&some.plan.scene.radius, &all.plan.scene.radius, sizeof(float));
+    for (uint32_t i = 0; i < 3; i++)
+        assert_memory_equal(some.gold[i].xrgb8888, all.gold[frames[i]].xrgb8888, sizeof all.gold[0].xrgb8888);
+    assert_memory_not_equal(some.gold[0].xrgb8888, some.gold[1].xrgb8888, sizeof all.gold[0].xrgb8888);
+    pipeline_packed_free(&some);
+    pipeline_packed_free(&all);
+    pipeline_free(&l.pipeline);
+}
+
+static void a_pack_does_not_depend_on_those_made_before(void **state) {
+    lab l;
+    pipeline_packed first, other, again;
+    (void)state;
+    lab_open(&l, 96, 64);
+    const pipeline_choice plain = pipeline_default(&l.pipeline);
+    pipeline_choice buckets = plain;
+    buckets.quality.buckets = true;
+    buckets.quality.photons = 512;
+    pack(&l, &plain, &first);
+    pack(&l, &buckets, &other);
+    pack(&l, &plain, &again);
+    assert_int_equal(first.size, again.size);
+    assert_memory_equal(first.bytes, again.bytes, first.size);
+    assert_true(other.size != first.size || memcmp(other.bytes, first.bytes, first.size) != 0);
+    pipeline_packed_free(&first);
+    pipeline_packed_free(&other);
+    pipeline_packed_free(&again);
+    pipeline_free(&l.pipeline);
+}
+
+static void another_size_is_what_that_size_bakes_to_on_its_own(void **state) {
+    lab large, small;
+    pipeline_packed a, b;
+    (void)state;
+    lab_open(&large, 96, 64);
+    lab_open(&small, 40, 30);
+    pipeline_choice choice = pipeline_default(&large.pipeline);
+    choice.width = 40;
+    choice.height = 30;
+    pack(&large, &choice, &a);
+    choice = pipeline_default(&small.pipeline);
+    pack(&small, &choice, &b);
+    assert_int_equal(a.size, b.size);
+    assert_memory_equal(a.bytes, b.bytes, a.size);
+    pipeline_packed_free(&a);
+    pipeline_packed_free(&b);
+    pipeline_free(&large.pipeline);
+    pipeline_free(&small.pipeline);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_chosen_frame_has_the_bits_that_it_has_among_all),
+        cmocka_unit_test(a_pack_does_not_depend_on_those_made_before),
+        cmocka_unit_test(another_size_is_what_that_size_bakes_to_on_its_own),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,18 @@
+/* What an open pack's device holds between frames, for tests that recompute a pass's work on the host. */
+#ifndef VIT_TESTS_READ_BUFFER_H
+#define VIT_TESTS_READ_BUFFER_H
+
+#include "open_pack.h"
+#include "vit.h"
+
+/* A copy of a device buffer; free() it. */
+static inline void *read_buffer(const open_pack *p, vit_buffer b) {
+    const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->limits);
+    void *out = malloc(bytes + 1);
+    assert_non_null(out);
+    assert_int_equal(clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL),
+                     0);
+    return out;
+}
+
+#endif

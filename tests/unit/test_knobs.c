@@ -1,0 +1,182 @@
+/* The knobs of a sweep. Stated: the default comes first and unchanged; a setting that bears one knob's name differs from the
+ * default in what belongs to that knob; no two settings are alike; the list is the same every time, bounded, and reaches every
+ * knob even when short; combinations turn several knobs and are spread; what a setting says reads back through the quality
+ * block's own reader. */
+#include "cost/knobs.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+static const scene_quality base = {.photons = 10000, .bounces = 4, .radius = 0.8, .tile = 32};
+
+typedef struct list {
+    knob_setting *s;
+    uint32_t count;
+} list;
+
+static list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
+    list l;
+    vit_text why = {""};
+    const knobs_input in = {.base = q, .radius = radius, .only = only, .most = most};
+    if (knobs_settings(&in, &l.s, &l.count, &why) != VIT_OK)
+        fail_msg("%s", why.text);
+    return l;
+}
+
+static const char *text_of(const scene_quality *q) {
+    static char text[4][SCENE_QUALITY];
+    static int turn;
+    turn = (turn + 1) % 4;
+    scene_quality_text(q, text[turn], sizeof text[turn]);
+    return text[turn];
+}
+
+static const knob_setting *find(const list *l, const char *name) {
+    for (uint32_t i = 0; i < l->count; i++)
+        if (strcmp(l->s[i].name, name) == 0)
+            return &l->s[i];
+    fail_msg("no setting '%s'", name);
+    return NULL;
+}
+
+static void the_default_comes_first_and_each_knob_alone_changes_its_own(void **state) {
+    list l = make(&base, 0.8, NULL, 64);
+    (void)state;
+    assert_string_equal(l.s[0].name, "default");
+    assert_string_equal(text_of(&l.s[0].quality), text_of(&base));
+    assert_true(knobs_in_quality(&l.s[0]));
+    assert_int_equal(find(&l, "photons 2500")->quality.photons, 2500);
+    assert_int_equal(find(&l, "photons 40000")->quality.photons, 40000);
+    assert_true(find(&l, "radius 0.4")->quality.radius == 0.4);
+    assert_true(find(&l, "radius auto")->quality.radius == 0.0);
+    assert_true(find(&l, "estimate buckets")->quality.buckets && !find(&l, "estimate buckets")->quality.raw);
+    assert_true(find(&l, "estimate raw buckets")->quality.raw);
+    assert_true(find(&l, "kernel flattened")->quality.flatten == 15.0);
+    assert_int_equal(find(&l, "tile 8")->quality.tile, 8);
+    assert_int_equal(find(&l, "bounces 2")->quality.bounces, 2);
+    assert_true(find(&l, "normal_keys on")->quality.normal_keys);
+    assert_true(find(&l, "size 0.5")->scale == 0.5 && !knobs_in_quality(find(&l, "size 0.5")));
+    assert_true(find(&l, "lanes 8")->lanes == 8 && !knobs_in_quality(find(&l, "lanes 8")));
+    for (uint32_t i = 0; i < l.count; i++) /* the default's own values are no settings of their own */
+        assert_true(strcmp(l.s[i].name, "tile 32") != 0 && strcmp(l.s[i].name, "estimate list") != 0);
+    free(l.s);
+}
+
+static void no_two_settings_are_alike_and_the_list_is_the_same_each_time(void **state) {
+    list a = make(&base, 0.8, NULL, 80), b = make(&base, 0.8, NULL, 80);
+    (void)state;
+    assert_int_equal(a.count, 80);
+    assert_int_equal(b.count, 80);
+    for (uint32_t i = 0; i < a.count; i++) {
+        assert_string_equal(a.s[i].name, b.s[i].name);
+        for (uint32_t k = 0; k < i; k++) {
+            assert_string_not_equal(a.s[i].name, a.s[k].name);
+            assert_true(a.s[i].scale != a.s[k].scale || a.s[i].lanes != a.s[k].lanes ||
+                        strcmp(text_of(&a.s[i].quality), text_of(&a.s[k].quality)) != 0);
+        }
+    }
+    free(a.s);
+    free(b.s);
+}
+
+static void combinations_turn_several_knobs_and_reach_all_values(void **state) {
+    list l = make(&base, 0.8, "photons,radius,estimate", 1000);
+    uint32_t several = 0, buckets = 0, few = 0;
+    (void)state;
+    assert_int_equal(l.count, 5 * 7 * 3); /* the whole product: the list ends when it does */
+    for (uint32_t i = 0; i < l.count; i++) {
+        const scene_quality *q = &l.s[i].quality;
+        const int turned = (q->photons != base.photons) + (q->radius != base.radius) + q->buckets;
+        assert_true((strcmp(l.s[i].knob, "several") == 0) == (turned >= 2));
+        several += turned >= 2;
+    }
+    assert_int_equal(several, 5 * 7 * 3 - 1 - 4 - 6 - 2);
+    free(l.s);
+    l = make(&base, 0.8, "photons,radius,estimate", 40); /* a part is spread over it */
+    for (uint32_t i = 13; i < l.count; i++) {
+        buckets += l.s[i].quality.buckets;
+        few += l.s[i].quality.photons == 2500;
+    }
+    assert_in_range(buckets, 10, 25);
+    assert_in_range(few, 3, 8);
+    free(l.s);
+}
+
+static void a_short_list_still_has_every_knob(void **state) {
+    list l = make(&base, 0.8, NULL, 10);
+    (void)state;
+    assert_int_equal(l.count, 10);
+    for (uint32_t i = 1; i < l.count; i++)
+        for (uint32_t k = 0; k < i; k++)
+            assert_string_not_equal(l.s[i].knob, l.s[k].knob);
+    free(l.s);
+}
+
+static void only_knobs_that_are_named_are_turned_and_unknown_ones_refused(void **state) {
+    list l = make(&base, 0.8, "tile,lanes", 64);
+    const knobs_input in = {.base = &base, .radius = 0.8, .only = "tile,speed", .most = 9};
+    knob_setting *none;
+    uint32_t count;
+    vit_text why = {""};
+    (void)state;
+    assert_int_equal(l.count, 1 + 3 + 3);
+    free(l.s);
+    assert_int_equal(knobs_settings(&in, &none, &count, &why), VIT_USAGE);
+    assert_non_null(strstr(why.text, "'speed'"));
+    assert_non_null(strstr(why.text, "normal_keys"));
+}
+
+static void without_photons_nothing_is_a_multiple_of_them(void **state) {
+    scene_quality q = base;
+    q.photons = 0;
+    list l = make(&q, 0, "photons,radius", 64);
+    (void)state;
+    for (uint32_t i = 0; i < l.count; i++)
+        assert_true(l.s[i].quality.photons == 0);
+    assert_in_range(l.count, 1, 2); /* the default, and perhaps radius auto */
+    free(l.s);
+}
+
+static void what_a_setting_says_reads_back(void **state) {
+    list l = make(&base, 1.0 / 3, NULL, 200);
+    (void)state;
+    for (uint32_t i = 0; i < l.count; i++) {
+        vit_text why = {""};
+        scene_quality q = l.s[(i * 7 + 3) % l.count].quality; /* over anything */
+        if (scene_quality_apply(text_of(&l.s[i].quality), &q, &why) != VIT_OK)
+            fail_msg("%s", why.text);
+        assert_string_equal(text_of(&q), text_of(&l.s[i].quality));
+        assert_true(q.radius == l.s[i].quality.radius);
+        assert_true(q.flatten == l.s[i].quality.flatten && q.raw == l.s[i].quality.raw);
+    }
+    free(l.s);
+}
+
+static void bad_settings_are_refused_and_change_nothing(void **state) {
+    static const char *const bad[] = {"tile = 9",      "tile = 24",    "speed = 1", "tile =", "smoothing = \"raw\"",
+                                      "flatten = 3.0", "photons = 1.5"};
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        scene_quality q = base;
+        vit_text why = {""};
+        assert_int_equal(scene_quality_apply(bad[i], &q, &why), VIT_BAD_INPUT);
+        assert_string_equal(text_of(&q), text_of(&base));
+        assert_true(why.text[0] && !strchr(why.text, '\n'));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_default_comes_first_and_each_knob_alone_changes_its_own),
+        cmocka_unit_test(no_two_settings_are_alike_and_the_list_is_the_same_each_time),
+        cmocka_unit_test(combinations_turn_several_knobs_and_reach_all_values),
+        cmocka_unit_test(a_short_list_still_has_every_knob),
+        cmocka_unit_test(only_knobs_that_are_named_are_turned_and_unknown_ones_refused),
+        cmocka_unit_test(without_photons_nothing_is_a_multiple_of_them),
+        cmocka_unit_test(what_a_setting_says_reads_back),
+        cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
