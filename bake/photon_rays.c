@@ -101,6 +101,7 @@ static void accept_blocker(const struct RTCFilterFunctionNArguments *f) {
         f->valid[0] = 0;
 }
 
+/* Hits count from t > 0 on, as in ray_triangle(): a point on an edge lies in two surfaces, and neither shadows it. */
 bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, float distance) {
     query q = {.s = r->s, .origin = origin, .direction = direction};
     struct RTCRay ray = {.org_x = origin.x,
@@ -109,6 +110,7 @@ bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, flo
                          .dir_x = direction.x,
                          .dir_y = direction.y,
                          .dir_z = direction.z,
+                         .tnear = 0x1p-100f,
                          .tfar = distance,
                          .mask = ~0u};
 #if VIT_EMBREE == 4

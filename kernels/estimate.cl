@@ -15,44 +15,54 @@ static inline lv3 estimate_normalise(lv3 sum)
 }
 
 #if VIT_EFFECT_LIST
-kernel void estimate_list(global const vit_scene *scene, uint max_nodes, global const uint *keys, global const float *position, global const uint *normal,
-                          global const uint *masks, global const uint *prefix, global const uint *list_first, global const uint *list_count,
-                          global const uint *list, global const vit_photon *photons, global float *indirect WORK_PARAMETERS)
+#define ESTIMATE_PARAMETERS                                                                                                      \
+    global const vit_scene *scene, uint max_nodes, global const uint *masks, global const uint *prefix, global const uint *list_first, \
+        global const uint *list_count, global const uint *list, global const vit_photon *photons
+#define ESTIMATE_ARGUMENTS scene, max_nodes, masks, prefix, list_first, list_count, list, photons
+
+/* Irradiance of the lanes' samples, W/m2: key (negative: none, 0 there), position, unit normal. Lanes may have any keys. */
+static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, lv3 p, lv3 s WORK_PASSED)
+{
+    li rest = L_GE(key, (li)0);
+    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    while (l_any(rest)) {
+        uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
+        li own = rest & L_EQ(key, (li)(int)k);
+        rest &= ~own;
+        uint cluster = cluster_of(scene, masks, prefix, k);
+        if (cluster >= max_nodes)
+            continue;
+        global const uint *at = list + list_first[cluster], *end = at + list_count[cluster];
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+        WORK_ADD(evaluations, (ulong)popcount(l_bits(own)) * (ulong)(end - at));
+        for (; at < end; at++) {
+            global const vit_photon *q = photons + *at;
+            lv3 o = lv3_sub(p, lv3_load(q->position));
+            lf d2 = lv3_dot(o, o);
+#if VIT_EFFECT_FLATTENED
+            lf off = lv3_dot(o, s);
+            d2 = fma(off * off, (lf)scene->flatten, d2);
+#endif
+            lf w = l_max(fma(d2, (lf)-q->inv_radius2, (lf)1), (lf)0);
+            w = l_sel(estimate_accepts(s, lv3_load(q->direction)), w, (lf)0);
+            sum = lv3_along(sum, lv3_load(q->power), w);
+        }
+        total = lv3_sel(own, estimate_normalise(sum), total);
+    }
+    return total;
+}
+
+kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
+                          global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
     li key = L_AS_INT(L_LOAD(keys + first));
-    li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     WORK_BEGIN
-    if (l_any(rest)) {
-        lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
-        while (l_any(rest)) {
-            uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
-            li own = rest & L_EQ(key, (li)(int)k);
-            rest &= ~own;
-            uint cluster = cluster_of(scene, masks, prefix, k);
-            if (cluster >= max_nodes)
-                continue;
-            global const uint *at = list + list_first[cluster], *end = at + list_count[cluster];
-            lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
-            WORK_ADD(evaluations, (ulong)popcount(l_bits(own)) * (ulong)(end - at));
-            for (; at < end; at++) {
-                global const vit_photon *q = photons + *at;
-                lv3 o = lv3_sub(p, lv3_load(q->position));
-                lf d2 = lv3_dot(o, o);
-#if VIT_EFFECT_FLATTENED
-                lf off = lv3_dot(o, s);
-                d2 = fma(off * off, (lf)scene->flatten, d2);
-#endif
-                lf w = l_max(fma(d2, (lf)-q->inv_radius2, (lf)1), (lf)0);
-                w = l_sel(estimate_accepts(s, lv3_load(q->direction)), w, (lf)0);
-                sum = lv3_along(sum, lv3_load(q->power), w);
-            }
-            total = lv3_sel(own, estimate_normalise(sum), total);
-        }
-    }
+    if (l_any(L_GE(key, (li)0)))
+        total = estimate_gather(ESTIMATE_ARGUMENTS, key, lv3_load_planes(position, n, first), l_decode_normal(L_LOAD(normal + first)) WORK_PASS);
     lv3_store_planes(total, indirect, n, first);
     WORK_END
 }

@@ -79,7 +79,7 @@ const vit_pass vit_passes[] = {
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons, B_indirect, WORK}},
+     {B_scene, V_max_nodes, B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons, B_keys, B_position, B_normal, B_indirect, WORK}},
     {"estimate_buckets",
      ON(BUCKETS),
      PER_SAMPLE,
