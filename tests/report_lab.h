@@ -76,7 +76,8 @@ static inline void lab_setting(cost_results *r, uint32_t i, const char *knob, co
 static inline void lab_fronts(cost_results *r) {
     for (uint32_t i = 0; i < r->count; i++) {
         cost_setting *s = &r->settings[i];
-        s->front = s->front_relmse = true;
+        s->elsewhere = strcmp(s->knob, "lanes") == 0;
+        s->front = s->front_relmse = !s->elsewhere;
         for (uint32_t k = 0; k < r->count; k++) {
             const cost_setting *o = &r->settings[k];
             if (o->ms < s->ms && o->total.nmse < s->total.nmse)
@@ -119,6 +120,8 @@ static inline cost_results lab_results(uint32_t width, uint32_t height) {
                       .height = height * 4,
                       .frame = 12,
                       .every = 4,
+                      .direct = {1e-9, 2e-9, 0, 90, 1, 1e-5},
+                      .direct_largest = 0.001,
                       .truncation = {0.0031, 0.012, -0.013, 41, 0.995, 0.04},
                       .path_tracer_ms = 57.3,
                       .path_tracer_nmse = 1.96,

@@ -17,6 +17,10 @@ bool report_on_front(const cost_setting *s, report_measure by) {
     return by == REPORT_NMSE ? s->front : s->front_relmse;
 }
 
+report_drawn report_set(const cost_setting *s, report_measure by) {
+    return report_on_front(s, by) ? REPORT_FRONT : s->elsewhere ? REPORT_ELSEWHERE : REPORT_OTHERS;
+}
+
 uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {

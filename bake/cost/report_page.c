@@ -2,6 +2,7 @@
 #include "report_parts.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void print_head(const cost_results *r, FILE *to) {
@@ -45,32 +46,48 @@ static void print_facts(const cost_results *r, FILE *to) {
     (void)fputs("</section>\n", to);
 }
 
-/* Indices of the points in each of the plot's data sets, as report_plots.c prints them, so that report.js can name them. */
-static void print_series(const cost_results *r, report_measure by, FILE *to) {
-    (void)fputs("<figure class=\"chart\" data-others=\"", to);
+/* Indices of the points in each of the plot's data sets, in the order of report_plots.c (the front by time), so that report.js
+ * can name them. */
+static bool print_series(const cost_results *r, report_measure by, FILE *to) {
+    uint32_t *front = malloc(r->count * sizeof front[0]);
+    if (!front)
+        return false;
+    const uint32_t count = report_front(r, by, front);
+    (void)fputs("<figure class=\"chart\" data-front=\"", to);
+    for (uint32_t k = 0; k < count; k++)
+        if (front[k] != 0)
+            (void)fprintf(to, "%" PRIu32 " ", front[k]);
+    (void)fputs("\" data-others=\"", to);
     for (uint32_t i = 1; i < r->count; i++)
-        if (!report_on_front(&r->settings[i], by))
+        if (report_set(&r->settings[i], by) == REPORT_OTHERS)
             (void)fprintf(to, "%" PRIu32 " ", i);
-    (void)fputs("\" data-front=\"", to);
+    (void)fputs("\" data-elsewhere=\"", to);
     for (uint32_t i = 1; i < r->count; i++)
-        if (report_on_front(&r->settings[i], by))
+        if (report_set(&r->settings[i], by) == REPORT_ELSEWHERE)
             (void)fprintf(to, "%" PRIu32 " ", i);
     (void)fputs("\">\n", to);
+    free(front);
+    return true;
 }
 
 static vit_status print_error_plots(const cost_results *r, FILE *to, vit_text *why) {
     (void)fputs("<section id=\"error-time\"><h2>Error against time</h2>\n<p>Down and left is better. No setting is at once "
-                "faster and nearer to the "
-                "reference than one on the <b class=\"front\">Pareto front</b>; the line is the best error that each time "
-                "buys. Both axes are "
-                "logarithmic. <span class=\"js\">Point at a dot for its name; click for its details.</span></p>\n"
+                "faster and nearer "
+                "to the reference than one on the <b class=\"front\">Pareto front</b>; the line is the best error that each "
+                "time buys. Both "
+                "axes are logarithmic. <span class=\"js\">Point at a dot for its name; click for its details.</span></p>\n"
                 "<ul class=\"legend\"><li><i class=\"dot\" style=\"background:var(--c5)\"></i>on the front</li>"
-                "<li><i class=\"dot\" style=\"background:var(--c6)\"></i>default</li><li><i class=\"dot\" "
-                "style=\"background:var(--c4)\"></i>others</li></ul>\n",
+                "<li><i class=\"dot\" style=\"background:var(--c6)\"></i>default</li>"
+                "<li><i class=\"dot\" style=\"background:var(--c4)\"></i>others</li>"
+                "<li><i class=\"dot\" style=\"border:2px solid var(--c4)\"></i>another output size or lanes: no part of the "
+                "front</li></ul>\n",
                 to);
     vit_status status = VIT_OK;
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE && status == VIT_OK; by++) {
-        print_series(r, by, to);
+        if (!print_series(r, by, to)) {
+            (void)snprintf(why->text, sizeof why->text, "report: out of memory");
+            return VIT_FAILED;
+        }
         status = report_plot_error(r, by, to, why);
         (void)fprintf(to, "<figcaption>%s</figcaption></figure>\n",
                       by == REPORT_NMSE ? "NMSE: errors in bright places weigh most."
@@ -131,16 +148,16 @@ static void print_details(const cost_results *r, FILE *to) {
                 "Work is the weighted sum of exact counts, equal on every device.</p>\n",
                 to);
     report_table_settings(r, to);
-    (void)fputs("</section>\n<section id=\"passes\"><h2>Passes and exact work of one setting</h2>\n<noscript><p>This table "
-                "needs JavaScript; "
-                "report.json has the same numbers.</p></noscript>\n"
-                "<div class=\"controls js\"><label>Setting <select id=\"setting\"></select></label></div>\n<p id=\"values\" "
-                "class=\"values\"></p>\n"
-                "<div class=\"wide\"><table id=\"pass-table\" class=\"js\"></table></div>\n</section>\n"
-                "<section id=\"bounces\"><h2>What the bounce limit leaves out</h2>\n<p>The same paths, with and without the "
-                "limit: this error "
-                "stays however many photons there are.</p>\n",
-                to);
+    (void)fputs(
+        "</section>\n<section id=\"passes\"><h2>Passes and exact work of one setting</h2>\n<noscript><p>This table "
+        "needs JavaScript; "
+        "report.json has the same numbers.</p></noscript>\n"
+        "<div class=\"controls js\"><label>Setting <select id=\"setting\"></select></label></div>\n<p id=\"values\" "
+        "class=\"values\"></p>\n"
+        "<div class=\"wide\"><table id=\"pass-table\" class=\"js\"></table></div>\n</section>\n"
+        "<section id=\"bounces\"><h2>What the error is made of</h2>\n<p>Of the default. What the bounce limit leaves out stays "
+        "however many photons there are; direct light is computed, not estimated, and differs by rounding alone.</p>\n",
+        to);
     report_table_errors(r, to);
     (void)fputs("</section>\n", to);
 }

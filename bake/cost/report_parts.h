@@ -23,6 +23,9 @@ typedef enum report_measure { REPORT_NMSE, REPORT_RELMSE } report_measure;
 const char *report_measure_name(report_measure by);
 double report_error(const cost_setting *s, report_measure by); /* total light */
 bool report_on_front(const cost_setting *s, report_measure by);
+/* How a setting but the default is drawn. */
+typedef enum report_drawn { REPORT_OTHERS, REPORT_FRONT, REPORT_ELSEWHERE } report_drawn;
+report_drawn report_set(const cost_setting *s, report_measure by);
 /* Indices of the front's settings, fastest first; `out` has room for r->count. */
 uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out);
 /* Milliseconds until the path tracer's error is the setting's; NAN where either is unknown or 0. */

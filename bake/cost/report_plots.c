@@ -51,12 +51,12 @@ static void print_frame(const plot *p, FILE *to) {
     report_axis_print(to, "y", p->y, title);
 }
 
-/* Data of the plots: others, the front's stair, the front's points, the default. An empty set gets a point that is not drawn.
- */
+/* Data of the plots: others, the front's stair, the front's points, the default, those that differ elsewhere than in the
+ * quality block. Each begins with a point that is not drawn: gnuplot wants one. */
 static void print_data(const plot *p, FILE *to) {
     (void)fputs("$others << EOD\nNaN NaN\n", to);
     for (uint32_t i = 1; i < p->r->count; i++)
-        if (drawn(p, i) && !report_on_front(&p->r->settings[i], p->by))
+        if (drawn(p, i) && report_set(&p->r->settings[i], p->by) == REPORT_OTHERS)
             (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
     (void)fputs("EOD\n$stair << EOD\nNaN NaN\n", to);
     for (uint32_t k = 0; k < p->front_count; k++) {
@@ -74,15 +74,20 @@ static void print_data(const plot *p, FILE *to) {
     (void)fputs("EOD\n$default << EOD\nNaN NaN\n", to);
     if (drawn(p, 0))
         (void)fprintf(to, "%.9g %.9g\n", ms_of(p, 0), error_of(p, 0));
+    (void)fputs("EOD\n$elsewhere << EOD\nNaN NaN\n", to);
+    for (uint32_t i = 1; i < p->r->count; i++)
+        if (drawn(p, i) && report_set(&p->r->settings[i], p->by) == REPORT_ELSEWHERE)
+            (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
     (void)fputs("EOD\n", to);
 }
 
-/* In gnuplot's order 1, 2, 3, 4: report.js finds the points by it. */
+/* In gnuplot's order 1 to 5: report.js finds the points by it. */
 static void print_plot(FILE *to) {
     (void)fprintf(to,
                   "plot $others with points pt 7 ps 0.75 lc rgb '#0101%02x', $stair with steps lw 1.6 lc rgb '#0101%02x', "
-                  "$front with points pt 7 ps 1.0 lc rgb '#0101%02x', $default with points pt 13 ps 1.5 lc rgb '#0101%02x'",
-                  DOT, FRONT, FRONT, DEFAULT);
+                  "$front with points pt 7 ps 1.0 lc rgb '#0101%02x', $default with points pt 13 ps 1.5 lc rgb '#0101%02x', "
+                  "$elsewhere with points pt 6 ps 0.75 lw 2 lc rgb '#0101%02x'",
+                  DOT, FRONT, FRONT, DEFAULT, DOT);
 }
 
 /* Everything drawn: points as small boxes, the front's stair as segments. Returns how many; `out` has room for 3 a setting

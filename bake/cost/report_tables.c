@@ -244,5 +244,6 @@ void report_table_errors(const cost_results *r, FILE *to) {
     print_errors("Default, all light, against the reference with the same limit", &d->total, to);
     print_errors("Default, all light, against the reference without a limit", &d->unlimited, to);
     print_errors("Default, indirect light alone, same limit", &d->indirect, to);
+    print_errors("Default, direct light alone: no estimate\xE2\x80\x99s fault", &r->direct, to);
     (void)fputs("</tbody></table></div>\n", to);
 }
