@@ -156,7 +156,7 @@ static void print_details(const cost_results *r, FILE *to) {
         "class=\"values\"></p>\n"
         "<div class=\"wide\"><table id=\"pass-table\" class=\"js\"></table></div>\n</section>\n"
         "<section id=\"bounces\"><h2>What the error is made of</h2>\n<p>Of the default. What the bounce limit leaves out stays "
-        "however many photons there are; direct light is computed, not estimated, and differs by rounding alone.</p>\n",
+        "however many photons there are; direct light is computed, not estimated: its error should be next to nothing.</p>\n",
         to);
     report_table_errors(r, to);
     (void)fputs("</section>\n", to);
