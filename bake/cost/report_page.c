@@ -110,8 +110,8 @@ static void print_prices(const cost_results *r, FILE *to) {
         "quotient is the error "
         "bought with a millisecond: the more the better, best first. Where it is further off and faster, it is the error paid "
         "for a "
-        "millisecond saved: the less the better, best first. Times in brackets differ by less than twice the median absolute "
-        "deviations of both: no difference that can be told from noise.</p>\n<div class=\"pair\">\n",
+        "millisecond saved: the less the better, best first. Times in brackets differ by less than twice their standard error: "
+        "no difference that can be told from noise.</p>\n<div class=\"pair\">\n",
         to);
     report_table_prices(r, REPORT_NMSE, to);
     report_table_prices(r, REPORT_RELMSE, to);
@@ -124,13 +124,22 @@ static vit_status print_time(const cost_results *r, FILE *to, vit_text *why) {
                 "timed without looking at passes. Blue names are on a front; the dashed line is the default.</p>\n<figure "
                 "class=\"chart\">\n",
                 to);
-    vit_status status = report_plot_stack(r, to, why);
-    (void)fputs(
-        "</figure>\n</section>\n<section id=\"tracer\"><h2>Beside a path tracer</h2>\n<p>The dashed line is the "
-        "reference\xE2\x80\x99s path tracer (Embree), "
-        "timed in the same run between the settings: its error falls as one over its time. Circles are paths a pixel.</p>\n"
-        "<div class=\"pair\">\n",
-        to);
+    const vit_status status = report_plot_stack(r, to, why);
+    (void)fputs("</figure>\n</section>\n", to);
+    return status;
+}
+
+static vit_status print_tracer(const cost_results *r, FILE *to, vit_text *why) {
+    vit_status status = VIT_OK;
+    (void)fputs("<section id=\"tracer\"><h2>Beside a path tracer</h2>\n", to);
+    if (!(r->path_tracer_ms > 0)) {
+        (void)fputs("<p>The path tracer was not timed.</p></section>\n", to);
+        return VIT_OK;
+    }
+    (void)fputs("<p>The dashed line is the reference\xE2\x80\x99s path tracer (Embree), timed in the same run between the "
+                "settings: its error "
+                "falls as one over its time. Circles are paths a pixel.</p>\n<div class=\"pair\">\n",
+                to);
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE && status == VIT_OK; by++) {
         (void)fputs("<figure class=\"chart small\">\n", to);
         status = report_plot_tracer(r, by, to, why);
@@ -194,6 +203,8 @@ vit_status report_page(const cost_results *r, FILE *to, vit_text *why) {
         return status;
     print_prices(r, to);
     status = print_time(r, to, why);
+    if (status == VIT_OK)
+        status = print_tracer(r, to, why);
     if (status != VIT_OK)
         return status;
     (void)fputs("<section id=\"look\"><h2>Look at it</h2>\n", to);

@@ -34,11 +34,11 @@ double report_equal_paths(const cost_results *r, const cost_setting *s, report_m
 
 /* What one knob does to the default: X(name, meaning), best first. */
 #define REPORT_KINDS(X)                                                                                                        \
-    X(GAIN, "Nearer to the reference and no slower")                                                                           \
+    X(GAIN, "Nearer to the reference and not measurably slower")                                                               \
     X(BUYS, "Nearer and slower: error bought for time")                                                                        \
     X(SAVES, "Further off and faster: time saved for error")                                                                   \
     X(SAME, "The same error: only time differs")                                                                               \
-    X(LOSES, "Further off and no faster")
+    X(LOSES, "Further off and not measurably faster")
 typedef enum report_kind {
 #define X(name, meaning) REPORT_##name,
     REPORT_KINDS(X)
@@ -48,7 +48,7 @@ typedef struct report_price {
     uint32_t setting;
     report_kind kind;
     double ms, error; /* the setting's less the default's */
-    bool timed;       /* |ms| is more than twice both median absolute deviations: a difference that is no noise */
+    bool timed;       /* |ms| is more than twice its standard error: a difference that is no noise */
     double rate;      /* |error| / |ms|, 0 unless BUYS or SAVES */
 } report_price;
 /* The settings that differ from the default in one knob: kinds in the order above, within BUYS the most error a millisecond

@@ -50,11 +50,11 @@ static void a_time_within_the_noise_is_no_gain_in_speed(void **state) {
     report_price prices[LAB_SETTINGS];
     cost_setting *d = &r->settings[0], *s = &r->settings[1];
     r->count = 2;
-    s->ms = d->ms - 0.1;
+    s->ms = d->ms - 0.08; /* twice its standard error: 2 sqrt(2) 1.858 x 0.05 / sqrt(9) = 0.0876 */
     s->ms_mad = d->ms_mad = 0.05;
     assert_int_equal(report_prices(r, REPORT_NMSE, prices), 1);
     assert_int_equal(prices[0].kind, REPORT_LOSES);
-    s->ms = d->ms - 0.3;
+    s->ms = d->ms - 0.1;
     assert_int_equal(report_prices(r, REPORT_NMSE, prices), 1);
     assert_int_equal(prices[0].kind, REPORT_SAVES);
     r->count = LAB_SETTINGS;
