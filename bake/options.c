@@ -60,7 +60,8 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
                    {"--photons", &o->photons, 0, 1000000, "a number of photon paths, 0 to 1000000"},
                    {"--bounces", &o->bounces, 1, 32, "1 to 32"},
                    {"--tile", &o->tile, 8, 64, "8, 16, 32 or 64"},
-                   {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"}};
+                   {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"},
+                   {"--indirect-samples", &o->indirect_samples, 1, 16, "1, 4 or 16"}};
     long n = 0;
     *known = true;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
@@ -136,6 +137,9 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     if (o->kernel)
         q->flatten = strcmp(o->kernel, "sphere") == 0 ? 0 : q->flatten > 0 ? q->flatten : 15;
     q->normal_keys = o->normal_keys >= 0 ? o->normal_keys != 0 : q->normal_keys;
+    q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
+    if (q->indirect_samples != 1 && q->indirect_samples != 4 && q->indirect_samples != 16)
+        return usage(why, "--indirect-samples", "1, 4 or 16");
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
         return usage(why, "--tile", "8, 16, 32 or 64");
     return VIT_OK;
@@ -159,7 +163,7 @@ void options_help(void) {
          "\n"
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
-         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1\n"
+         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

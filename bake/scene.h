@@ -59,6 +59,7 @@ typedef struct scene_quality {
     bool raw;                  /* buckets without interpolation, 54 directions: the source's way */
     double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
     bool normal_keys;
+    int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
 } scene_quality;
 
 typedef struct scene {

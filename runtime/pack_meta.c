@@ -63,7 +63,8 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
         vit_u32 needed;
     } needs[] = {NEEDS(SPOT, LIGHTS),         NEEDS(RANGE, LIGHTS),      NEEDS(PHOTONS, LIGHTS),
                  NEEDS(TRACED, PHOTONS),      NEEDS(LIST, PHOTONS),      NEEDS(BUCKETS, PHOTONS),
-                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS)};
+                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS),
+                 NEEDS(SPARSE, PHOTONS),      NEEDS(SPARSE_16, SPARSE)};
 #undef NEEDS
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
