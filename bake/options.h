@@ -13,7 +13,7 @@ typedef struct options {
     int width, height, frames, photons, bounces, tile, indirect_samples;
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
-    const char *estimate, *smoothing, *kernel;
+    const char *estimate, *smoothing, *kernel, *texture_filter;
     int normal_keys;           /* -1: as the scene says */
 } options;
 

@@ -41,7 +41,8 @@ static const field quality_fields[] = {
     {"smoothing", FIELD_CHOICE, offsetof(quality_group, q.raw), "interpolated|raw"},
     {"kernel", FIELD_CHOICE, offsetof(quality_group, flattened), "sphere|flattened"},
     {"normal_keys", FIELD_SWITCH, offsetof(quality_group, q.normal_keys), NULL},
-    {"indirect_samples", FIELD_WHOLE, offsetof(quality_group, q.indirect_samples), "[1, 16]"},
+    {"indirect_samples", FIELD_AMONG, offsetof(quality_group, q.indirect_samples), SCENE_INDIRECT_SAMPLES},
+    {"texture_filter", FIELD_WORD, offsetof(quality_group, q.texture_filter), SCENE_FILTERS},
 };
 
 void reader_at(reader *r, const char *group, int index) {
@@ -74,8 +75,6 @@ static bool merge_quality(const place *at, const config_setting_t *group, scene_
         return false;
     if (g.q.tile & (g.q.tile - 1))
         return fields_fail(at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
-    if (g.q.indirect_samples != 1 && g.q.indirect_samples != 4 && g.q.indirect_samples != 16)
-        return fields_fail(at, group, "'indirect_samples' must be 1, 4 or 16, got %d", g.q.indirect_samples);
     if (g.q.raw && !g.q.buckets)
         return fields_fail(at, group, "smoothing \"raw\" needs estimate \"buckets\"");
     if ((seen & FIELD_BIT(QUALITY_FLATTEN)) && !g.flattened)
@@ -201,7 +200,7 @@ static bool read_top(reader *r, const config_setting_t *root) {
 
 static void set_defaults(scene *s) {
     *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0};
-    s->quality = (scene_quality){.photons = 17000, .bounces = 4, .tile = 32, .indirect_samples = 1};
+    s->quality = (scene_quality){.photons = 17000, .bounces = 4, .tile = 32, .indirect_samples = 1, .texture_filter = FILTER_BILINEAR};
 }
 
 static vit_status copy_path(scene *s, const char *path, vit_text *why) {

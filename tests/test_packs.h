@@ -82,6 +82,8 @@ static const struct {
     {"room-buckets", TEST_PACKS "/room.cfg", "--estimate buckets"},
     {"sparse-room", TEST_PACKS "/room.cfg", "--indirect-samples 16"},
     {"sparse-buckets", TEST_PACKS "/room.cfg", "--estimate buckets --indirect-samples 4"},
+    {"nearest", TEST_PACKS "/room.cfg", "--texture-filter nearest"},
+    {"trilinear", TEST_PACKS "/room.cfg", "--texture-filter trilinear"},
     {"still", TEST_PACKS "/still.cfg", ""},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
     {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},

@@ -169,6 +169,15 @@ static void light_at_fewer_samples_takes_the_place_of_the_estimate(void **state)
     assert_int_equal(bytes_of(&sixteen, "flags"), bytes_of(&all, "keys") / 16);
 }
 
+static void a_texture_filter_takes_no_buffer_and_no_pass(void **state) {
+    (void)state;
+    only_adds("nearest", "room", " ", " ");
+    only_adds("trilinear", "room", " ", " ");
+    assert_int_equal(requirements("room").effects & (VIT_EFFECT_BIT_NEAREST | VIT_EFFECT_BIT_TRILINEAR), 0);
+    assert_true(requirements("nearest").effects & VIT_EFFECT_BIT_NEAREST);
+    assert_true(requirements("trilinear").effects & VIT_EFFECT_BIT_TRILINEAR);
+}
+
 static void still_lights_have_no_pass_that_traces_photons(void **state) {
     (void)state;
     only_adds("room", "still", " ", " photon_paths ");
@@ -257,6 +266,7 @@ int main(void) {
         cmocka_unit_test(raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone),
         cmocka_unit_test(a_flattened_kernel_takes_no_buffer_and_no_pass),
         cmocka_unit_test(light_at_fewer_samples_takes_the_place_of_the_estimate),
+        cmocka_unit_test(a_texture_filter_takes_no_buffer_and_no_pass),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),

@@ -119,6 +119,8 @@ ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys", few)
 ALIKE(interpolated_light_hashes_the_same, "sparse", together)
 ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets", together)
 ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", together)
+ALIKE(nearest_texels_hash_the_same, "nearest", few)
+ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
 ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -190,6 +192,8 @@ int main(void) {
         cmocka_unit_test(interpolated_light_hashes_the_same),
         cmocka_unit_test(interpolated_buckets_hash_the_same),
         cmocka_unit_test(one_sample_in_16_and_small_tiles_hash_the_same),
+        cmocka_unit_test(nearest_texels_hash_the_same),
+        cmocka_unit_test(trilinear_textures_hash_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),
