@@ -64,7 +64,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     pack_sections sections = *in->sections;
     run r;
     s.effects &= ~(uint32_t)(VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS |
-                             VIT_EFFECT_BIT_TRACED);
+                             VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_SPARSE | VIT_EFFECT_BIT_SPARSE_16);
     s.effects |= VIT_EFFECT_BIT_LIST;
     s.paths = 0;
     s.baked = 1;

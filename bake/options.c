@@ -1,4 +1,5 @@
 #include "options.h"
+#include "fields.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -57,6 +58,22 @@ static bool flag(const char *name, options *o) {
     return false;
 }
 
+/* Options that take one of a few numbers. */
+static bool among(const char *name, const char *value, options *o, bool *known, const char **wants) {
+    const struct {
+        const char *name, *list, *wants;
+        int *to;
+    } lists[] = {{"--indirect-samples", SCENE_INDIRECT_SAMPLES, "1, 4 or 16", &o->indirect_samples}};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
+        if (strcmp(name, lists[i].name) == 0) {
+            *known = true;
+            *wants = lists[i].wants;
+            *lists[i].to = value ? atoi(value) : 0;
+            return fields_place(lists[i].list, value) >= 0;
+        }
+    return *known = false;
+}
+
 /* Options with a value; false with *known: the value is wrong, `wants` says what would be right. */
 static bool valued(const char *name, const char *value, options *o, bool *known, const char **wants) {
     const struct {
@@ -104,7 +121,9 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         return *wants = "interpolated or raw", one_of(value, "interpolated", "raw", &o->smoothing);
     if (strcmp(name, "--kernel") == 0)
         return *wants = "sphere or flattened", one_of(value, "sphere", "flattened", &o->kernel);
-    return *known = false;
+    if (strcmp(name, "--texture-filter") == 0)
+        return *wants = "nearest, bilinear or trilinear", o->texture_filter = value, fields_place(SCENE_FILTERS, value) >= 0;
+    return among(name, value, o, known, wants);
 }
 
 vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
@@ -150,6 +169,8 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     if (o->kernel)
         q->flatten = strcmp(o->kernel, "sphere") == 0 ? 0 : q->flatten > 0 ? q->flatten : 15;
     q->normal_keys = o->normal_keys >= 0 ? o->normal_keys != 0 : q->normal_keys;
+    q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
+    q->texture_filter = o->texture_filter ? fields_place(SCENE_FILTERS, o->texture_filter) : q->texture_filter;
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
         return usage(why, "--tile", "8, 16, 32 or 64");
     return VIT_OK;
@@ -177,7 +198,8 @@ void options_help(void) {
          "\n"
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
-         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1\n"
+         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
+         "  --texture-filter nearest|bilinear|trilinear\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

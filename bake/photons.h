@@ -21,6 +21,7 @@ typedef struct photons_input {
     const vit_material *materials; /* as in the pack */
     const atlas *atlas;
     float ray_offset, box_pad, radius; /* of vit_scene, metres */
+    uint32_t effects;                  /* of vit_scene */
     uint32_t bounces;                  /* of vit_scene */
     uint32_t first_path;               /* number of the first path: those before it are traced while playing */
     const photons_light *lights;       /* still lights */

@@ -50,6 +50,11 @@ typedef struct scene_material {
     int line;
 } scene_material;
 
+/* Values of settings that take one of a few. */
+#define SCENE_INDIRECT_SAMPLES "1|4|16"
+#define SCENE_FILTERS "nearest|bilinear|trilinear"
+enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
+
 typedef struct scene_quality {
     int photons;               /* emitted paths; 0: no indirect light */
     int bounces;               /* 1..32 */
@@ -59,6 +64,8 @@ typedef struct scene_quality {
     bool raw;                  /* buckets without interpolation, 54 directions: the source's way */
     double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
     bool normal_keys;
+    int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
+    int texture_filter;        /* FILTER_* */
 } scene_quality;
 
 typedef struct scene {
