@@ -76,21 +76,21 @@ static void reference_step(void *user, double fraction, double seconds_left) {
 
 static vit_status make_reference(sweep *s, double target, vit_text *why) {
     reference *r = &s->out->reference;
-    const reference_input in = {.sections = &s->base.sections,
-                                .direct_only = s->direct_only,
-                                .frame = s->at,
-                                .every = s->grid.every,
-                                .bounces = s->base.plan.scene.bounces,
-                                .target = target,
-                                .max_samples = s->in->max_samples,
-                                .threads = s->in->pipeline->threads,
-                                .cache = s->in->cache,
-                                .cancel = s->in->cancel,
-                                .progress = reference_step,
-                                .user = s->progress};
+    s->truth = (reference_input){.sections = &s->base.sections,
+                                 .direct_only = s->direct_only,
+                                 .frame = s->at,
+                                 .every = s->grid.every,
+                                 .bounces = s->base.plan.scene.bounces,
+                                 .target = target,
+                                 .max_samples = s->in->max_samples,
+                                 .threads = s->in->pipeline->threads,
+                                 .cache = s->in->cache,
+                                 .cancel = s->in->cancel,
+                                 .progress = reference_step,
+                                 .user = s->progress};
     progress_stage(s->progress, "reference");
     reference_free(r);
-    vit_status status = reference_render(&in, r, why);
+    vit_status status = reference_render(&s->truth, r, why);
     progress_end(s->progress);
     if (status == VIT_OK)
         progress_line(s->progress, false, "reference: %u paths a pixel, NMSE of its own error %.2g", r->samples, r->error);
