@@ -140,12 +140,15 @@ static vit_status save(rendering *r, bool always, double *saved, vit_text *why) 
     return VIT_OK;
 }
 
+static bool finished(const rendering *r) {
+    return r->state.rounds > 0 && (r->state.rounds >= r->most || r->error <= r->in->target);
+}
+
 static vit_status trace_rounds(rendering *r, vit_text *why) {
     const uint32_t before = r->state.rounds;
     double saved = now();
-    r->error = state_error(&r->state);
     r->first_share = r->state.rounds / rounds_needed(r);
-    while (r->state.rounds == 0 || (r->state.rounds < r->most && r->error > r->in->target)) {
+    while (!finished(r)) {
         if (!run_chunks(r, path_chunk, true)) {
             const vit_status status = r->state.rounds > before ? save(r, true, &saved, why) : VIT_OK;
             return status == VIT_OK ? fail(why, VIT_FAILED, "interrupted") : status;
@@ -156,7 +159,18 @@ static vit_status trace_rounds(rendering *r, vit_text *why) {
         if (status != VIT_OK)
             return status;
     }
-    return r->state.rounds > before ? save(r, true, &saved, why) : VIT_OK;
+    return save(r, true, &saved, why);
+}
+
+/* View samples, once a run: their rays count in the first. */
+static vit_status trace(rendering *r, vit_text *why) {
+    const uint64_t rays = r->state.rays;
+    r->began = now();
+    if (!run_chunks(r, view_chunk, false))
+        return fail(why, VIT_FAILED, "interrupted");
+    if (r->state.rounds > 0)
+        r->state.rays = rays;
+    return trace_rounds(r, why);
 }
 
 static vit_status check(const reference_input *in, vit_text *why) {
@@ -199,14 +213,13 @@ static vit_status render(rendering *r, reference *out, vit_text *why) {
         status = load(r, why);
     if (status != VIT_OK)
         return status;
-    if (!paths_open(r->in, threads, &r->scene))
-        return fail(why, VIT_FAILED, "Embree fails");
-    r->began = now();
-    if (run_chunks(r, view_chunk, false))
-        status = trace_rounds(r, why);
-    else
-        status = fail(why, VIT_FAILED, "interrupted");
-    paths_close(&r->scene);
+    r->error = state_error(&r->state);
+    if (!finished(r)) {
+        if (!paths_open(r->in, threads, &r->scene))
+            return fail(why, VIT_FAILED, "Embree fails");
+        status = trace(r, why);
+        paths_close(&r->scene);
+    }
     return status == VIT_OK ? state_finish(&r->state, out, why) : status;
 }
 

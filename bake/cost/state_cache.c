@@ -12,7 +12,7 @@
 
 typedef struct cache_header {
     char magic[8];
-    uint64_t key, rays, sums_hash;
+    uint64_t key, rays, hash;
     double seconds;
     uint32_t width, height, rounds, zero;
 } cache_header;
@@ -97,6 +97,13 @@ static bool file_name(const reference_state *s, const char *folder, char path[RO
     return length > 0 && length < ROOM;
 }
 
+/* Of the whole file. */
+static uint64_t hash_file(cache_header h, const pixel_sums *sums, size_t size) {
+    h.hash = 0;
+    const uint64_t parts[] = {vit_hash(&h, sizeof h), vit_hash(sums, size)};
+    return vit_hash(parts, sizeof parts);
+}
+
 static bool fits(const cache_header *h, const reference_state *s) {
     return memcmp(h->magic, magic, sizeof magic) == 0 && h->key == s->key && h->width == s->width && h->height == s->height &&
            h->rounds > 0 && h->rounds <= REFERENCE_MOST / REFERENCE_ROUND;
@@ -109,7 +116,7 @@ void state_load(reference_state *s, const char *folder) {
     const size_t size = s->pixels * sizeof *s->sums;
     pixel_sums *sums = malloc(size);
     if (f && sums && fread(&h, sizeof h, 1, f) == 1 && fits(&h, s) && fread(sums, 1, size, f) == size && fgetc(f) == EOF &&
-        vit_hash(sums, size) == h.sums_hash) {
+        hash_file(h, sums, size) == h.hash) {
         memcpy(s->sums, sums, size);
         s->rounds = h.rounds;
         s->rays = h.rays;
@@ -122,17 +129,13 @@ void state_load(reference_state *s, const char *folder) {
 
 vit_status state_save(const reference_state *s, const char *folder, vit_text *why) {
     const size_t size = s->pixels * sizeof *s->sums;
-    cache_header h = {.key = s->key,
-                      .rays = s->rays,
-                      .sums_hash = vit_hash(s->sums, size),
-                      .seconds = s->seconds,
-                      .width = s->width,
-                      .height = s->height,
-                      .rounds = s->rounds};
+    cache_header h = {
+        .key = s->key, .rays = s->rays, .seconds = s->seconds, .width = s->width, .height = s->height, .rounds = s->rounds};
     char path[ROOM];
     unsigned char *file = malloc(sizeof h + size);
     vit_status status = VIT_FAILED;
     memcpy(h.magic, magic, sizeof magic);
+    h.hash = hash_file(h, s->sums, size);
     if (!file || !file_name(s, folder, path))
         snprintf(why->text, sizeof why->text, "reference: %s",
                  file ? "the cache's folder has too long a name" : "out of memory");
