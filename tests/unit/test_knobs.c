@@ -9,7 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
-static const scene_quality base = {.photons = 10000, .bounces = 4, .radius = 0.8, .tile = 32};
+static const scene_quality base = {
+    .photons = 10000, .bounces = 4, .radius = 0.8, .tile = 32, .indirect_samples = 1, .texture_filter = FILTER_BILINEAR};
 
 typedef struct list {
     knob_setting *s;
