@@ -21,7 +21,7 @@ CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
 KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh surface.clh cells.clh visibility.cl samples.cl direct.cl \
-           photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl resolve.cl
+           photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl sparse.cl resolve.cl
 
 RUNTIME := $(wildcard runtime/*.c)
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)

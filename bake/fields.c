@@ -89,6 +89,46 @@ static bool read_choice(const place *at, const config_setting_t *s, const field 
     return true;
 }
 
+int fields_place(const char *list, const char *text) {
+    const size_t length = text ? strlen(text) : 0;
+    for (int i = 0; text && list; i++) {
+        const char *bar = strchr(list, '|');
+        if (length == (bar ? (size_t)(bar - list) : strlen(list)) && strncmp(list, text, length) == 0)
+            return i;
+        list = bar ? bar + 1 : NULL;
+    }
+    return -1;
+}
+
+/* "a|b|c" as `a, b or c`, each in quotes if they are words. */
+static void spell(const char *list, const char *quote, char *out, size_t room) {
+    size_t used = 0;
+    out[0] = 0;
+    for (const char *at = list; at && used < room;) {
+        const char *bar = strchr(at, '|');
+        const char *before = at == list ? "" : bar ? ", " : " or ";
+        const int length = bar ? (int)(bar - at) : (int)strlen(at);
+        used += (size_t)snprintf(out + used, room - used, "%s%s%.*s%s", before, quote, length, at, quote);
+        at = bar ? bar + 1 : NULL;
+    }
+}
+
+static bool read_listed(const place *at, const config_setting_t *s, const field *f, int *out) {
+    const int type = config_setting_type(s);
+    const bool number = f->kind == FIELD_AMONG, fits = number ? type == CONFIG_TYPE_INT : type == CONFIG_TYPE_STRING;
+    char text[80] = "", allowed[128];
+    if (fits && number)
+        (void)snprintf(text, sizeof text, "%d", config_setting_get_int(s));
+    else if (fits)
+        (void)snprintf(text, sizeof text, "%s", config_setting_get_string(s));
+    const int found = fits ? fields_place(f->allowed, text) : -1;
+    spell(f->allowed, number ? "" : "\"", allowed, sizeof allowed);
+    if (found < 0)
+        return fields_fail(at, s, "'%s' must be %s%s%.64s", f->name, allowed, fits ? ", got " : "", text);
+    *out = number ? config_setting_get_int(s) : found;
+    return true;
+}
+
 static bool read_text(const place *at, const config_setting_t *s, const field *f, char *out) {
     const char *text = config_setting_type(s) == CONFIG_TYPE_STRING ? config_setting_get_string(s) : NULL;
     if (!text)
@@ -139,6 +179,9 @@ static bool read_field(const place *at, const config_setting_t *s, const field *
         return true;
     case FIELD_CHOICE:
         return read_choice(at, s, f, to);
+    case FIELD_WORD:
+    case FIELD_AMONG:
+        return read_listed(at, s, f, to);
     case FIELD_TEXT:
     case FIELD_PATH:
         return read_text(at, s, f, to);
@@ -191,6 +234,14 @@ size_t fields_write(const field *f, const void *from, char *text, size_t room) {
         else
             (void)snprintf(word, sizeof word, "\"auto\"");
         break;
+    case FIELD_WORD: {
+        const char *at = f->allowed;
+        for (int i = 0; i < *(const int *)value; i++)
+            at = strchr(at, '|') + 1;
+        (void)snprintf(word, sizeof word, "\"%.*s\"", (int)strcspn(at, "|"), at);
+        break;
+    }
+    case FIELD_AMONG:
     case FIELD_WHOLE:
         (void)snprintf(word, sizeof word, "%d", *(const int *)value);
         break;

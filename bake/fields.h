@@ -12,6 +12,8 @@ typedef enum field_kind {
     FIELD_AUTO,                /* double, or "auto": 0 */
     FIELD_SWITCH,              /* bool */
     FIELD_CHOICE,              /* bool: `allowed` is "a|b", false for a and true for b */
+    FIELD_WORD,                /* int: place of the word in `allowed`, "a|b|c" */
+    FIELD_AMONG,               /* int: one of the whole numbers of `allowed`, "1|4|16" */
     FIELD_TEXT,                /* char[SCENE_NAME] */
     FIELD_PATH,                /* char[SCENE_PATH], resolved against the scene file's folder; "" stays "" */
     FIELD_VECTOR,              /* double[3]: [x, y, z] or (x, y, z) */
@@ -23,7 +25,7 @@ typedef struct field {
     const char *name;
     field_kind kind;
     size_t offset;             /* in the struct that fields_read() fills */
-    const char *allowed;       /* numbers: "[lo, hi)" with round brackets for excluded ends; FIELD_CHOICE: "a|b" */
+    const char *allowed;       /* numbers: "[lo, hi)" with round brackets for excluded ends; words: "a|b" */
 } field;
 
 /* Where in the scene file we are: goes in front of every error. */
@@ -51,5 +53,8 @@ bool fields_list(const place *at, const config_setting_t *group, const char *nam
 
 /* Element `index` of a list, which must be a group. */
 bool fields_group(const place *at, const config_setting_t *list, int index, config_setting_t **group);
+
+/* Place of `text` in a list "a|b|c", or -1; text may be NULL. */
+int fields_place(const char *list, const char *text);
 
 #endif

@@ -1,4 +1,5 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
+#include "cost/fit_pack.h"
 #include "options.h"
 #include "pipeline.h"
 #include <errno.h>
@@ -37,10 +38,13 @@ static vit_status make_pack(bake *b, vit_text *why) {
         status = options_apply(&b->options, &p->scene, why);
     if (status == VIT_OK)
         status = pipeline_load(p, why);
+    if (status != VIT_OK)
+        return status;
+    const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
+    if (budget.ms > 0 || budget.work > 0)
+        return fit_pack(p, &budget, &b->packed, why);
     const pipeline_choice choice = pipeline_default(p);
-    if (status == VIT_OK)
-        status = pipeline_pack(p, &choice, &b->packed, why);
-    return status;
+    return pipeline_pack(p, &choice, &b->packed, why);
 }
 
 static void print_line(void *user, const char *line) {

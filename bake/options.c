@@ -1,4 +1,6 @@
 #include "options.h"
+#include "fields.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +33,13 @@ static bool radius_of(const char *text, options *o) {
     return *text && *end == 0 && o->radius > 0 && o->radius < 1e9;
 }
 
+/* A positive number. */
+static bool budget_of(const char *text, double *out) {
+    char *end;
+    *out = text ? strtod(text, &end) : 0;
+    return text && *text >= '0' && *text <= '9' && *end == 0 && *out > 0 && *out < 1e18;
+}
+
 static bool one_of(const char *text, const char *a, const char *b, const char **out) {
     *out = text;
     return text && (strcmp(text, a) == 0 || strcmp(text, b) == 0);
@@ -47,6 +56,22 @@ static bool flag(const char *name, options *o) {
         if (strcmp(name, flags[i].name) == 0)
             return *flags[i].to = true;
     return false;
+}
+
+/* Options that take one of a few numbers. */
+static bool among(const char *name, const char *value, options *o, bool *known, const char **wants) {
+    const struct {
+        const char *name, *list, *wants;
+        int *to;
+    } lists[] = {{"--indirect-samples", SCENE_INDIRECT_SAMPLES, "1, 4 or 16", &o->indirect_samples}};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
+        if (strcmp(name, lists[i].name) == 0) {
+            *known = true;
+            *wants = lists[i].wants;
+            *lists[i].to = value ? atoi(value) : 0;
+            return fields_place(lists[i].list, value) >= 0;
+        }
+    return *known = false;
 }
 
 /* Options with a value; false with *known: the value is wrong, `wants` says what would be right. */
@@ -87,6 +112,10 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
     }
     if (strcmp(name, "--size") == 0)
         return *wants = "WIDTHxHEIGHT, up to 7680x4320", size_of(value, &o->width, &o->height);
+    if (strcmp(name, "--fit") == 0)
+        return *wants = "milliseconds a frame", budget_of(value, &o->fit);
+    if (strcmp(name, "--fit-work") == 0)
+        return *wants = "work units a frame, a whole number", budget_of(value, &o->fit_work) && o->fit_work == floor(o->fit_work);
     if (strcmp(name, "--radius") == 0)
         return *wants = "metres, or auto", radius_of(value, o);
     if (strcmp(name, "--estimate") == 0)
@@ -95,7 +124,9 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         return *wants = "interpolated or raw", one_of(value, "interpolated", "raw", &o->smoothing);
     if (strcmp(name, "--kernel") == 0)
         return *wants = "sphere or flattened", one_of(value, "sphere", "flattened", &o->kernel);
-    return *known = false;
+    if (strcmp(name, "--texture-filter") == 0)
+        return *wants = "nearest, bilinear or trilinear", o->texture_filter = value, fields_place(SCENE_FILTERS, value) >= 0;
+    return among(name, value, o, known, wants);
 }
 
 vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
@@ -118,6 +149,8 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
         return VIT_OK;
     if (!out->input)
         return usage(why, "vitrine-bake", "which scene or mesh?");
+    if (out->fit > 0 && out->fit_work > 0)
+        return usage(why, "--fit-work", "one budget at a time, not --fit as well");
     if (!out->output && !out->explain)
         return usage(why, out->input, "where to? -o FILE.vit, or --explain");
     return VIT_OK;
@@ -145,6 +178,8 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     }
     q->effective_area = o->effective_area >= 0 ? o->effective_area != 0 : q->effective_area;
     q->bounce_sequence = o->bounce_sequence >= 0 ? o->bounce_sequence != 0 : q->bounce_sequence;
+    q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
+    q->texture_filter = o->texture_filter ? fields_place(SCENE_FILTERS, o->texture_filter) : q->texture_filter;
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
         return usage(why, "--tile", "8, 16, 32 or 64");
     return VIT_OK;
@@ -156,11 +191,15 @@ void options_help(void) {
          "  vitrine-bake scene.cfg -o scene.vit      bake a scene file (bake/README.md has its grammar)\n"
          "  vitrine-bake model.glb -o model.vit      any mesh: framed by its box, turning camera, one moving light\n"
          "  vitrine-bake scene.cfg --explain         bake, write nothing, say what: effects and why, every buffer, total bytes\n"
+         "  vitrine-bake scene.cfg --fit 33 -o s.vit   the best quality that plays at 30 frames a second here\n"
          "\n"
          "  -o, --output FILE     the pack; written under another name first, so there is never half a pack\n"
          "  --explain             effects, bounds, buffers; with -o the pack is written too\n"
          "  --strict              a missing texture is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
+         "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
+         "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
+         "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"
          "  --threads N           of the baker (default: all cores); changes no byte\n"
          "  --device N            OpenCL device for measuring bounds and hashes (default 0); changes no byte\n"
          "  --quiet               warnings and errors only\n"
@@ -168,8 +207,8 @@ void options_help(void) {
          "\n"
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
-         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1\n"
-         "  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
+         "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
+         "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

@@ -10,10 +10,12 @@ typedef struct options {
     unsigned threads;          /* 0: all cores */
     uint32_t device;
     /* Overrides of the scene file; 0, NULL or negative: none. */
-    int width, height, frames, photons, bounces, tile;
+    int width, height, frames, photons, bounces, tile, indirect_samples;
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
-    const char *estimate, *smoothing, *kernel;
+    double fit;                /* milliseconds a frame, 0: none */
+    double fit_work;           /* work units a frame, a whole number, 0: none */
+    const char *estimate, *smoothing, *kernel, *texture_filter;
     int normal_keys, zones, effective_area, bounce_sequence; /* -1: as the scene says; zones: 2 with light_zones */
 } options;
 

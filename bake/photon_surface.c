@@ -36,22 +36,35 @@ static vec3 texel_color(const atlas *a, uint32_t word) {
     return (vec3){r * r, g * g, b * b};
 }
 
-/* Floor of half the binary logarithm of the texels that the footprint covers, from the exponent. */
-static int mip_level(float footprint2, float doubled_area, float doubled_uv_area, float texels) {
+/* As texture_level() of kernels/texture.clh. */
+static int mip_level(uint32_t effects, float footprint2, float doubled_area, float doubled_uv_area, float texels,
+                     float *blend) {
     const float covered = footprint2 * fabsf(doubled_uv_area) * texels / float_max(doubled_area, 1e-30f);
     const float clamped = float_max(float_min(covered, 1e30f), 1e-30f);
     int32_t bits;
     memcpy(&bits, &clamped, sizeof bits);
     const int exponent = (bits >> 23) - 127;
-    return exponent < -1 ? 0 : (exponent + 1) >> 1;
+    *blend = 0.0f;
+    if (!(effects & VIT_EFFECT_BIT_TRILINEAR))
+        return exponent < -1 ? 0 : (exponent + 1) >> 1;
+    if (exponent < 0)
+        return 0;
+    const int32_t mantissa_bits = (bits & 0x7fffff) | 0x3f800000;
+    float mantissa;
+    memcpy(&mantissa, &mantissa_bits, sizeof mantissa);
+    *blend = ((float)(exponent & 1) + (mantissa - 1.0f)) * 0.5f;
+    return exponent >> 1;
 }
 
-/* Bilinear; the gutter holds what lies beyond the image. */
-static vec3 texture_color(const atlas *a, const vit_texture *texture, float s, float t, int level) {
-    const int coarsest = (int)texture->mip_count - 1;
-    const vit_mip *mip = a->mips + texture->first_mip + (level < coarsest ? level : coarsest);
-    float u = fmaf(wrap(s, texture->wrap_u), (float)mip->width, -0.5f),
-          v = fmaf(wrap(t, texture->wrap_v), (float)mip->height, -0.5f);
+static vec3 nearest_color(const atlas *a, const vit_mip *mip, float s, float t) {
+    const uint32_t x = (uint32_t)(s * (float)mip->width), y = (uint32_t)(t * (float)mip->height);
+    return texel_color(a, mip->offset + (y < mip->height ? y : mip->height - 1) * mip->pitch +
+                              (x < mip->width ? x : mip->width - 1));
+}
+
+/* s, t: wrapped, 0..1. The gutter holds what lies beyond the image. */
+static vec3 bilinear_color(const atlas *a, const vit_mip *mip, float s, float t) {
+    float u = fmaf(s, (float)mip->width, -0.5f), v = fmaf(t, (float)mip->height, -0.5f);
     const float fu = floorf(u), fv = floorf(v);
     const uint32_t word = mip->offset + (uint32_t)(int)fv * mip->pitch + (uint32_t)(int)fu;
     u -= fu;
@@ -60,6 +73,20 @@ static vec3 texture_color(const atlas *a, const vit_texture *texture, float s, f
     const vec3 c01 = texel_color(a, word + mip->pitch), c11 = texel_color(a, word + mip->pitch + 1);
     const vec3 top = vec3_along(c00, vec3_sub(c10, c00), u), bottom = vec3_along(c01, vec3_sub(c11, c01), u);
     return vec3_along(top, vec3_sub(bottom, top), v);
+}
+
+/* As surface_texture() of kernels/surface.clh. */
+static vec3 texture_color(const photon_scene *s, const vit_texture *texture, float x, float y, int level, float blend) {
+    const int coarsest = (int)texture->mip_count - 1;
+    const atlas *a = s->atlas;
+    const vit_mip *mip = a->mips + texture->first_mip + (level < coarsest ? level : coarsest);
+    const float u = wrap(x, texture->wrap_u), v = wrap(y, texture->wrap_v);
+    if (s->effects & VIT_EFFECT_BIT_NEAREST)
+        return nearest_color(a, mip, u, v);
+    const vec3 c = bilinear_color(a, mip, u, v);
+    if (!(s->effects & VIT_EFFECT_BIT_TRILINEAR) || level >= coarsest)
+        return c;
+    return vec3_along(c, vec3_sub(bilinear_color(a, mip + 1, u, v), c), blend);
 }
 
 /* Reflectance of the triangle at barycentric weights b. width: of the footprint across the ray, m; cosine: of the ray to the
@@ -78,8 +105,10 @@ static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3]
     const float u = fmaf(b[2], s2, fmaf(b[1], s1, b[0] * s0)), v = fmaf(b[2], t2, fmaf(b[1], t1, b[0] * t0));
     const float uv_area = (s1 - s0) * (t2 - t0) - (s2 - s0) * (t1 - t0);
     const float footprint2 = width * width / float_max(cosine, 0.05f);
-    const int level = mip_level(footprint2, doubled_area, uv_area, (float)finest->width * (float)finest->height);
-    return vec3_times(plain, texture_color(s->atlas, texture, u, v, level));
+    float blend;
+    const int level =
+        mip_level(s->effects, footprint2, doubled_area, uv_area, (float)finest->width * (float)finest->height, &blend);
+    return vec3_times(plain, texture_color(s, texture, u, v, level, blend));
 }
 
 photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,

@@ -204,7 +204,8 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
                             .materials = in->materials,
                             .atlas = in->atlas,
                             .ray_offset = in->ray_offset,
-                            .box_pad = in->box_pad};
+                            .box_pad = in->box_pad,
+                            .effects = in->effects};
     baking b = {.in = in};
     if (in->bounces < 2)
         return VIT_OK;

@@ -78,6 +78,7 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
                             .atlas = &p->atlas,
                             .ray_offset = p->geometry.ray_offset,
                             .box_pad = out->plan.scene.box_pad,
+                            .effects = out->plan.scene.effects,
                             .first_path = out->plan.scene.paths,
                             .radius = out->plan.scene.radius,
                             .bounces = out->plan.scene.bounces,

@@ -78,14 +78,15 @@ static uint32_t effects_of_lights(const scene *s, const tracks *t) {
     return e;
 }
 
-static uint32_t effects_of_materials(const model *m, const plan *p) {
-    uint32_t e = 0;
+static uint32_t effects_of_materials(const scene *s, const model *m, const plan *p) {
+    static const uint32_t filters[] = {[FILTER_NEAREST] = VIT_EFFECT_BIT_NEAREST, [FILTER_TRILINEAR] = VIT_EFFECT_BIT_TRILINEAR};
+    uint32_t e = 0, filter = filters[s->quality.texture_filter];
     for (int i = 0; i < m->material_count; i++) {
         const vit_material *v = &p->materials[i];
         if (m->materials[i].triangles == 0)
             continue;
         if (v->texture != VIT_NONE)
-            e |= VIT_EFFECT_BIT_TEXTURES;
+            e |= VIT_EFFECT_BIT_TEXTURES | filter;
         if (v->cutout)
             e |= VIT_EFFECT_BIT_CUTOUT;
         if (v->emission[0] > 0 || v->emission[1] > 0 || v->emission[2] > 0)
@@ -109,6 +110,8 @@ static uint32_t effects_of_quality(const scene *s, const plan *p) {
     e |= q->zones ? VIT_EFFECT_BIT_ZONES : 0;
     e |= q->effective_area ? VIT_EFFECT_BIT_AREA : 0;
     e |= q->bounce_sequence ? VIT_EFFECT_BIT_SEQUENCE : 0;
+    e |= q->indirect_samples > 1 ? VIT_EFFECT_BIT_SPARSE : 0;
+    e |= q->indirect_samples == 16 ? VIT_EFFECT_BIT_SPARSE_16 : 0;
     return e;
 }
 
@@ -161,7 +164,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         plan_free(out);
         return status;
     }
-    c->effects = effects_of_lights(s, t) | effects_of_materials(m, out) | effects_of_quality(s, out);
+    c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
     if (r->dark_sides > 0)
         c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
     if (c->effects & VIT_EFFECT_BIT_PHOTONS) {

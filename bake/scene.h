@@ -50,6 +50,11 @@ typedef struct scene_material {
     int line;
 } scene_material;
 
+/* Values of settings that take one of a few. */
+#define SCENE_INDIRECT_SAMPLES "1|4|16"
+#define SCENE_FILTERS "nearest|bilinear|trilinear"
+enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
+
 typedef struct scene_quality {
     int photons;               /* emitted paths; 0: no indirect light */
     int bounces;               /* 1..32 */
@@ -63,6 +68,8 @@ typedef struct scene_quality {
     bool light_zones;          /* zones also part surfaces that are lit unlike; needs zones */
     bool effective_area;       /* estimates are divided by the part of the kernel that lies on surfaces */
     bool bounce_sequence;      /* reflections follow a low-discrepancy sequence */
+    int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
+    int texture_filter;        /* FILTER_* */
 } scene_quality;
 
 typedef struct scene {

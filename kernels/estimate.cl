@@ -29,6 +29,22 @@ static inline estimate_sample estimate_load(uint n, uint first, global const flo
     return r;
 }
 
+/* The samples of these numbers. */
+static inline estimate_sample estimate_load_at(uint n, li at, global const float *position, global const uint *normal, ESTIMATE_BAKED)
+{
+    estimate_sample r;
+    r.p = lv3_set(L_GATHER(lf, VIT_PLANE(position, 0, n), at), L_GATHER(lf, VIT_PLANE(position, 1, n), at),
+                  L_GATHER(lf, VIT_PLANE(position, 2, n), at));
+    r.s = l_decode_normal(l_gather_u(normal, at));
+#if VIT_EFFECT_ZONES
+    r.accept = L_AS_INT(l_gather_u(accept, at));
+#endif
+#if VIT_EFFECT_AREA
+    r.inverse_area = L_GATHER(lf, inverse_area, at);
+#endif
+    return r;
+}
+
 /* Does a photon count for a sample? Without zones, if it arrives from the front of the surface. */
 static inline li estimate_accepts(const estimate_sample *sample, global const vit_photon *photon)
 {
@@ -86,6 +102,7 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sa
     return total;
 }
 
+#if !VIT_EFFECT_SPARSE
 kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
                           ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
@@ -103,23 +120,21 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
     WORK_END
 }
 #endif
+#endif
 
 #if VIT_EFFECT_BUCKETS
+#define BUCKET_PARAMETERS                                                                                                        \
+    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
+        global const uint *prefix, global const int *bounds, global const float *buckets
+#define BUCKET_ARGUMENTS scene, cameras, frame, max_nodes, masks, prefix, bounds, buckets
+
 #if VIT_EFFECT_RAW_BUCKETS
-/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. */
-kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
-                             global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
-                             global const int *bounds, global const float *buckets, ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
+/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. As estimate_gather; x, y: pixels. */
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
 {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
-        return;
-    li key = L_AS_INT(L_LOAD(keys + first));
+    lv3 p = sample->p, s = sample->s;
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
-    WORK_BEGIN
-    estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
-    lv3 s = sample.s;
     while (l_any(rest)) {
         uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
         li own = rest & L_EQ(key, (li)(int)k);
@@ -135,15 +150,14 @@ kernel void estimate_buckets(global const vit_scene *scene, global const vit_cam
             WORK_LANES(evaluations, own);
             uint face = b / 9;
             float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
-            float x = face < 2 ? sign : u, y = face < 2 ? u : face < 4 ? sign : v, z = face < 4 ? v : sign;
-            float unit = 1.0f / sqrt(fma(z, z, fma(y, y, x * x)));
-            lf w = 2.0f * l_max(lv3_dot(s, lv3_set((lf)(x * unit), (lf)(y * unit), (lf)(z * unit))), (lf)0);
+            float dx = face < 2 ? sign : u, dy = face < 2 ? u : face < 4 ? sign : v, dz = face < 4 ? v : sign;
+            float unit = 1.0f / sqrt(fma(dz, dz, fma(dy, dy, dx * dx)));
+            lf w = 2.0f * l_max(lv3_dot(s, lv3_set((lf)(dx * unit), (lf)(dy * unit), (lf)(dz * unit))), (lf)0);
             sum = lv3_along(sum, lv3_load(power), w);
         }
-        total = lv3_sel(own, estimate_normalise(&sample, sum), total);
+        total = lv3_sel(own, estimate_normalise(sample, sum), total);
     }
-    lv3_store_planes(total, indirect, n, first);
-    WORK_END
+    return total;
 }
 #else
 /* Irradiance of a cluster on a surface of normal s, x, y, z in scalar planes. An octant counts as far as it lies in front:
@@ -160,72 +174,81 @@ static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
 }
 
 /* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by how
- * near their centres are to the sample's tangent plane. Own tile and slice are always among them. */
-kernel void estimate_buckets(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *keys,
-                             global const float *position, global const uint *normal, global const uint *masks, global const uint *prefix,
-                             global const int *bounds, global const float *buckets, ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
+ * near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y: pixels. */
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
+{
+    lv3 p = sample->p, s = sample->s;
+    li rest = L_GE(key, (li)0);
+    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    global const vit_camera *camera = cameras + frame;
+    lf edge = (lf)(1.0f / (float)scene->tile);
+    lf fx = fma(L_FROM_INT(x) + 0.5f, edge, (lf)-0.5f), fy = fma(L_FROM_INT(y) + 0.5f, edge, (lf)-0.5f);
+    lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), (lf)scene->slice_near);
+    lf fz = l_log2(depth / scene->slice_near) * scene->slice_scale - (float)scene->slice_first - 0.5f;
+    fz = l_min(l_max(fz, (lf)-0.5f), (lf)((float)scene->slice_count - 0.5f));
+    lf ix = floor(fx), iy = floor(fy), iz = floor(fz);
+    fx -= ix;
+    fy -= iy;
+    fz -= iz;
+    li x0 = L_TRUNC(ix), y0 = L_TRUNC(iy), z0 = L_TRUNC(iz);
+    /* A tile's width at the sample: clusters farther than that from the tangent plane hardly count. */
+    lv3 pixel = lv3_load(camera->right);
+    lf cell = depth * (sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
+    while (l_any(rest)) {
+        /* Lanes between the same tile centres and slices, and with the same direction bits in their keys. */
+        int z = l_reduce_max(l_sel_i(rest, z0, (li)-1000000));
+        li own = rest & L_EQ(z0, (li)z);
+        int tx = l_reduce_max(l_sel_i(own, x0, (li)-1000000));
+        own &= L_EQ(x0, (li)tx);
+        int ty = l_reduce_max(l_sel_i(own, y0, (li)-1000000));
+        own &= L_EQ(y0, (li)ty);
+        uint direction = 0;
+#if VIT_EFFECT_NORMAL_KEYS
+        direction = (uint)l_reduce_max(l_sel_i(own, key & 63, (li)0));
+        own &= L_EQ(key & 63, (li)(int)direction);
+#endif
+        rest &= ~own;
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+        lf weights = (lf)0;
+        for (int corner = 0; corner < 8; corner++) {
+            int cx = tx + (corner & 1), cy = ty + ((corner >> 1) & 1), cz = z + (corner >> 2);
+            if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y || cz >= (int)scene->slice_count)
+                continue;
+            uint k = direction | key_spread(scene, 0, scene->key_bits_x, (uint)cx) | key_spread(scene, 1, scene->key_bits_y, (uint)cy) |
+                     key_spread(scene, 2, scene->key_bits_z, (uint)cz);
+            uint cluster = cluster_if_any(scene, masks, prefix, k);
+            if (cluster >= max_nodes)
+                continue;
+            WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
+            splat_box box = splat_node(bounds, max_nodes, cluster);
+            lv3 c = lv3_set((lf)(0.5f * (box.lo[0] + box.hi[0])), (lf)(0.5f * (box.lo[1] + box.hi[1])), (lf)(0.5f * (box.lo[2] + box.hi[2])));
+            lf off = lv3_dot(lv3_sub(c, p), s) / cell;
+            lf w = l_max(1.0f - off * off, (lf)0.01f);
+            w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
+            sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
+            weights += w;
+        }
+        lf scale = l_sel(L_GT(weights, (lf)0), 1.0f / l_max(weights, (lf)1e-20f), (lf)0);
+        total = lv3_sel(own, estimate_normalise(sample, lv3_scale(sum, scale)), total);
+    }
+    return total;
+}
+#endif
+
+#if !VIT_EFFECT_SPARSE
+kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
+                             ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
-    li key = L_AS_INT(L_LOAD(keys + first));
-    li rest = L_GE(key, (li)0);
+    li key = L_AS_INT(L_LOAD(keys + first)), x, y;
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    l_pixel(scene, first, &x, &y);
     WORK_BEGIN
-    if (l_any(rest)) {
-        global const vit_camera *camera = cameras + frame;
+    if (l_any(L_GE(key, (li)0))) {
         estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
-        lv3 p = sample.p, s = sample.s;
-        li x, y;
-        l_pixel(scene, first, &x, &y);
-        lf edge = (lf)(1.0f / (float)scene->tile);
-        lf fx = fma(L_FROM_INT(x) + 0.5f, edge, (lf)-0.5f), fy = fma(L_FROM_INT(y) + 0.5f, edge, (lf)-0.5f);
-        lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), (lf)scene->slice_near);
-        lf fz = l_log2(depth / scene->slice_near) * scene->slice_scale - (float)scene->slice_first - 0.5f;
-        fz = l_min(l_max(fz, (lf)-0.5f), (lf)((float)scene->slice_count - 0.5f));
-        lf ix = floor(fx), iy = floor(fy), iz = floor(fz);
-        fx -= ix;
-        fy -= iy;
-        fz -= iz;
-        li z0 = L_TRUNC(iz);
-        /* Tiles are at least 8 pixels wide, so the lanes' 4 x 4 pixels lie between the same tile centres. */
-        int x0 = l_reduce_min(L_TRUNC(ix)), y0 = l_reduce_min(L_TRUNC(iy));
-        /* A tile's width at the sample: clusters farther than that from the tangent plane hardly count. */
-        lv3 pixel = lv3_load(camera->right);
-        lf cell = depth * (sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
-        while (l_any(rest)) {
-            /* Lanes between the same slices, and with the same direction bits in their keys. */
-            int z = l_reduce_max(l_sel_i(rest, z0, (li)-1000000));
-            li own = rest & L_EQ(z0, (li)z);
-            uint direction = 0;
-#if VIT_EFFECT_NORMAL_KEYS
-            direction = (uint)l_reduce_max(l_sel_i(own, key & 63, (li)0));
-            own &= L_EQ(key & 63, (li)(int)direction);
-#endif
-            rest &= ~own;
-            lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
-            lf weights = (lf)0;
-            for (int corner = 0; corner < 8; corner++) {
-                int cx = x0 + (corner & 1), cy = y0 + ((corner >> 1) & 1), cz = z + (corner >> 2);
-                if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y || cz >= (int)scene->slice_count)
-                    continue;
-                uint k = direction | key_spread(scene, 0, scene->key_bits_x, (uint)cx) | key_spread(scene, 1, scene->key_bits_y, (uint)cy) |
-                         key_spread(scene, 2, scene->key_bits_z, (uint)cz);
-                uint cluster = cluster_if_any(scene, masks, prefix, k);
-                if (cluster >= max_nodes)
-                    continue;
-                WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
-                splat_box box = splat_node(bounds, max_nodes, cluster);
-                lv3 c = lv3_set((lf)(0.5f * (box.lo[0] + box.hi[0])), (lf)(0.5f * (box.lo[1] + box.hi[1])), (lf)(0.5f * (box.lo[2] + box.hi[2])));
-                lf off = lv3_dot(lv3_sub(c, p), s) / cell;
-                lf w = l_max(1.0f - off * off, (lf)0.01f);
-                w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
-                sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
-                weights += w;
-            }
-            lf scale = l_sel(L_GT(weights, (lf)0), 1.0f / l_max(weights, (lf)1e-20f), (lf)0);
-            total = lv3_sel(own, estimate_normalise(&sample, lv3_scale(sum, scale)), total);
-        }
+        total = bucket_gather(BUCKET_ARGUMENTS, key, &sample, x, y WORK_PASS);
     }
     lv3_store_planes(total, indirect, n, first);
     WORK_END

@@ -177,9 +177,8 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
     float px = a / (right2 * z) + 0.5f * (float)scene->width, py = b / (down2 * z) + 0.5f * (float)scene->height;
     if (!(px >= 0) || !(py >= 0) || !(px < (float)scene->width - 1) || !(py < (float)scene->height - 1))
         return;
-    uint x = (uint)px, y = (uint)py, t = scene->tile, tile = y / t * scene->tiles_x + x / t, ix = x % t, iy = y % t;
-    uint sample = tile * t * t + (iy / 4 * (t / 4) + ix / 4) * 16 + iy % 4 * 4 + ix % 4;
-    if (sqrt(d2) > hit_distance[sample] * 1.01f)
+    uint x = (uint)px, y = (uint)py;
+    if (sqrt(d2) > hit_distance[sample_at(scene, x, y)] * 1.01f)
         return;
     for (uint k = 0; k < 4; k++)
         atomic_max(dots + (size_t)(y + k / 2) * scene->width + x + k % 2, i + 1);

@@ -115,7 +115,7 @@ static int build_options(char *text, size_t size, const vit_limits *l) {
 }
 
 static vit_status build(vit_device *d, const vit_limits *l, vit_text *why) {
-    char options[1024];
+    char options[2048];
     cl_int e;
     if (!build_options(options, sizeof options, l))
         return vit_cl_failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);

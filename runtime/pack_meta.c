@@ -63,8 +63,10 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
         vit_u32 needed;
     } needs[] = {NEEDS(SPOT, LIGHTS),         NEEDS(RANGE, LIGHTS),      NEEDS(PHOTONS, LIGHTS),
                  NEEDS(TRACED, PHOTONS),      NEEDS(LIST, PHOTONS),      NEEDS(BUCKETS, PHOTONS),
-                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(ZONES, PHOTONS),       NEEDS(AREA, PHOTONS),       NEEDS(SEQUENCE, PHOTONS),
-                 NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS)};
+                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS),
+                 NEEDS(SPARSE, PHOTONS),      NEEDS(SPARSE_16, SPARSE),    NEEDS(NEAREST, TEXTURES),
+                 NEEDS(TRILINEAR, TEXTURES),
+                 NEEDS(ZONES, PHOTONS),        NEEDS(AREA, PHOTONS),          NEEDS(SEQUENCE, PHOTONS)};
 #undef NEEDS
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
@@ -85,6 +87,8 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
     const bool photons = e & VIT_EFFECT_BIT_PHOTONS, list = e & VIT_EFFECT_BIT_LIST, buckets = e & VIT_EFFECT_BIT_BUCKETS;
     if (list && buckets)
         return pack_refuse(why, "section META: effects LIST and BUCKETS exclude each other");
+    if ((e & VIT_EFFECT_BIT_NEAREST) && (e & VIT_EFFECT_BIT_TRILINEAR))
+        return pack_refuse(why, "section META: effects NEAREST and TRILINEAR exclude each other");
     if (photons && !list && !buckets)
         return pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
     if ((s->lights > 0) != ((e & VIT_EFFECT_BIT_LIGHTS) != 0))

@@ -4,6 +4,8 @@
 #define W(name) ((uint64_t)1 << B_##name)
 #define RAY_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels, B_bvh
 #define WORK B_work, V_pass, V_END /* last, in passes that count on the device */
+#define ESTIMATE B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons
+#define SPARSE_INPUT B_scene, B_cameras, V_frame, V_max_nodes, ESTIMATE, B_bounds, B_buckets, B_keys, B_position, B_normal, B_accept, B_inverse_area
 #define SURFACE_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels
 
 const vit_pass vit_passes[] = {
@@ -76,17 +78,25 @@ const vit_pass vit_passes[] = {
      {B_scene, V_max_nodes, V_level, V_chunks, B_photons, B_prefix, B_node_first, B_node_count, B_bounds, B_list_first, B_list_count, B_list, B_counters,
       B_buckets, WORK}},
     {"estimate_list",
-     ON(LIST),
+     ON(LIST) | ON_DENSE,
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, V_max_nodes, B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_indirect, WORK}},
+     {B_scene, V_max_nodes, ESTIMATE, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_indirect, WORK}},
     {"estimate_buckets",
-     ON(BUCKETS),
+     ON(BUCKETS) | ON_DENSE,
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, B_cameras, V_frame, V_max_nodes, B_keys, B_position, B_normal, B_masks, B_prefix, B_bounds, B_buckets, B_accept, B_inverse_area, B_indirect, WORK}},
+     {B_scene, B_cameras, V_frame, V_max_nodes, B_masks, B_prefix, B_bounds, B_buckets, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_indirect, WORK}},
+    {"estimate_sparse", ON(SPARSE), PER_COARSE, ONCE, W(coarse), {SPARSE_INPUT, B_coarse, WORK}},
+    {"interpolate",
+     ON(SPARSE),
+     PER_BLOCK,
+     ONCE,
+     W(indirect) | W(flags),
+     {B_scene, B_cameras, V_frame, B_keys, B_position, B_normal, B_coarse, B_indirect, B_flags, V_END}},
+    {"estimate_rest", ON(SPARSE), PER_REST, ONCE, W(indirect), {SPARSE_INPUT, B_flags, B_indirect, WORK}},
     {"dots_clear", ON_DOTS, PER_PIXEL, ONCE, W(dots), {B_scene, B_dots, V_END}},
     {"photon_dots", ON_DOTS, PER_PHOTON, ONCE, W(dots), {B_scene, B_cameras, V_frame, B_photons, B_hit_distance, B_dots, V_END}},
     {"resolve",
@@ -169,6 +179,14 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
     switch (p->extent) {
     case PER_SAMPLE:
         n = s->samples / l->lanes;
+        break;
+    case PER_COARSE:
+    case PER_REST:
+        n = l->lanes > 1 ? s->samples / (s->tile * s->tile) : p->extent == PER_REST ? s->samples : (size_t)VIT_COARSE(s, l);
+        *local = l->lanes > 1 ? 1 : l->group; /* tiles are fat */
+        break;
+    case PER_BLOCK:
+        n = s->samples / 16;
         break;
     case PER_RUN:
         n = (s->samples + l->run - 1) / l->run;

@@ -9,11 +9,12 @@
 #define ON(macro) ((uint32_t)VIT_EFFECT_BIT_##macro)
 #define ON_DOTS 0x80000000u /* not an effect of the pack: the view `photons` */
 #define ON_WORK 0x40000000u /* likewise: vit_open_info.count_work */
+#define ON_DENSE 0x20000000u /* likewise: indirect light is estimated at every sample */
 #define ALWAYS 0u
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
 typedef struct vit_limits {
-    uint32_t effects;          /* the pack's, ON_DOTS, ON_WORK */
+    uint32_t effects;          /* the pack's, ON_DOTS, ON_WORK, ON_DENSE */
     uint32_t max_nodes, max_list;
     vit_format format;
     vit_view view;
@@ -26,6 +27,9 @@ typedef struct vit_limits {
 
 #define VIT_CHUNKS 64u /* chunks of the root's list, at most */
 #define VIT_BUCKETS_OF(l) ((l)->effects & ON(RAW_BUCKETS) ? 54u : 8u)
+
+/* Samples of which every one of so many is estimated: kernels/sparse.cl. */
+#define VIT_COARSE(s, l) ((uint64_t)(s)->samples / ((l)->effects & ON(SPARSE_16) ? 16 : 4))
 
 /* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits l). */
 #define VIT_BUFFERS(X)                                                                                                           \
@@ -62,6 +66,8 @@ typedef struct vit_limits {
     X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                        \
     X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                        \
     X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                                \
+    X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                           \
+    X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                              \
     X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
     X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
     X(counters, ALWAYS, NONE, 2 * VIT_COUNTER_COUNT * 4)                                                                         \
@@ -89,6 +95,9 @@ typedef enum vit_buffer {
 /* Work-items of a pass. */
 typedef enum vit_extent {
     PER_SAMPLE,                /* samples / lanes */
+    PER_COARSE,                /* with one lane coarse samples, else tiles */
+    PER_REST,                  /* with one lane samples, else tiles */
+    PER_BLOCK,                 /* samples / 16 */
     PER_RUN,                   /* ceil(samples / run) */
     PER_PATH,                  /* paths / lanes */
     PER_PHOTON,

@@ -26,6 +26,9 @@
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
     X(estimate_list, (4 + 12 + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
     X(estimate_buckets, (4 + 12 + 4 + z->baked + 12) * z->samples + 16 * w[VIT_WORK_evaluations] + BOX * (w[VIT_WORK_evaluations] / 8))   \
+    X(estimate_sparse, (4 + 12 + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
+    X(interpolate, (4 + 12 + 4 + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
+    X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
     X(resolve, z->shown * z->samples + z->pixel * z->pixels)                                                                   \
@@ -40,6 +43,8 @@ typedef struct sizes {
     uint64_t nodes, inner, listed; /* nodes, of those that there is room for: all, with children, with a list but the root */
     uint64_t entries;              /* list entries kept */
     uint64_t lights, bucket;       /* bytes: of a frame's lights, of a cluster's buckets */
+    uint64_t coarse;               /* samples of the coarse grid */
+    uint64_t evaluation;           /* bytes: of an evaluation, a bucket with its part of the box */
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
     uint64_t zones, baked, cell;   /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
@@ -68,11 +73,13 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
                .traced = s->photons - s->baked,
                .lights = s->lights * sizeof(vit_light),
                .bucket = VIT_BUCKETS_OF(l) * 16,
+               .coarse = l->effects & ON(SPARSE) ? VIT_COARSE(s, l) : 0,
                .shown = shown_bytes(l),
                .pixel = vit_format_bytes(l->format) + (l->effects & ON_DOTS ? 4u : 0u)};
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
+    z.evaluation = l->effects & ON(LIST) ? 4 + sizeof(vit_photon) : 16 + (48 + z.zones) / 8;
     if (l->effects & ON(PHOTONS)) {
         z.nodes = least(c[VIT_COUNTER_nodes], l->max_nodes);
         z.inner = least(c[VIT_COUNTER_nodes] - c[VIT_COUNTER_clusters], z.nodes);

@@ -76,7 +76,7 @@ static inline void lab_build(lab *l, const char *options) {
 /* The kernels and `test_kernels` as one program, `lanes` wide. lab_close() when done. */
 static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_kernels) {
     const char *sources[LAB_MAX_SOURCES];
-    char options[1024];
+    char options[2048];
     cl_int e;
     lab l = {.device = lab_first_device()};
     assert_in_range(vit_kernel_source_count, 1, LAB_MAX_SOURCES - 1);

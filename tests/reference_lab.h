@@ -7,7 +7,7 @@
 #include "photon_room.h"
 
 #define LAB_PI 3.14159265358979323846
-enum { LAB_FRAMES = 6 };
+enum { LAB_FRAMES = 12 };
 
 typedef struct reference_lab {
     room *room;

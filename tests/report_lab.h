@@ -48,10 +48,6 @@ static inline void lab_setting(cost_results *r, uint32_t i, const char *knob, co
                                                    "splat lists",  "estimate",     "interpolate",  "resolve"};
     static const double shares[LAB_PASSES] = {0.18, 0.06, 0.14, 0.05, 0.03, 0.02, 0.02, 0.04, 0.08, 0.30, 0.03, 0.04};
     cost_setting *s = &r->settings[i];
-    (void)snprintf(s->name, sizeof s->name, "%s", name);
-    (void)snprintf(s->knob, sizeof s->knob, "%s", knob);
-    (void)snprintf(s->values, sizeof s->values,
-                   "photons = 17000; bounces = 4; radius = \"auto\"; tile = 32; estimate = \"list\"; %s;", name);
     *s = (cost_setting){.ms = ms,
                         .ms_p95 = ms * 1.05 + 0.3,
                         .ms_mad = 0.01 * ms,
@@ -80,7 +76,8 @@ static inline void lab_setting(cost_results *r, uint32_t i, const char *knob, co
 static inline void lab_fronts(cost_results *r) {
     for (uint32_t i = 0; i < r->count; i++) {
         cost_setting *s = &r->settings[i];
-        s->front = s->front_relmse = true;
+        s->elsewhere = strcmp(s->knob, "lanes") == 0;
+        s->front = s->front_relmse = !s->elsewhere;
         for (uint32_t k = 0; k < r->count; k++) {
             const cost_setting *o = &r->settings[k];
             if (o->ms < s->ms && o->total.nmse < s->total.nmse)
@@ -123,6 +120,8 @@ static inline cost_results lab_results(uint32_t width, uint32_t height) {
                       .height = height * 4,
                       .frame = 12,
                       .every = 4,
+                      .direct = {1e-9, 2e-9, 0, 90, 1, 1e-5},
+                      .direct_largest = 0.001,
                       .truncation = {0.0031, 0.012, -0.013, 41, 0.995, 0.04},
                       .path_tracer_ms = 57.3,
                       .path_tracer_nmse = 1.96,

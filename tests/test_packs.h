@@ -68,15 +68,22 @@ static const struct {
     {"raw", CORNELL "--estimate buckets --smoothing raw"},
     {"flattened", CORNELL "--kernel flattened"},
     {"normal-keys", CORNELL "--normal-keys 1 --tile 8"},
+    {"sparse", CORNELL "--all-formats --indirect-samples 4"},
+    {"sparse-16", CORNELL "--normal-keys 1 --tile 8 --indirect-samples 16"},
     {"dark", CORNELL "--photons 0"},
 #undef CORNELL
 #define ODD TEST_SCENES "/cornell.cfg", "--photons 5000 --frames 2 --all-formats "
     {"1x1", ODD "--size 1x1"},
     {"17x1", ODD "--size 17x1"},
     {"33x47", ODD "--size 33x47"},
+    {"sparse-17x1", ODD "--size 17x1 --indirect-samples 16"},
 #undef ODD
     {"room", TEST_PACKS "/room.cfg", ""},
     {"room-buckets", TEST_PACKS "/room.cfg", "--estimate buckets"},
+    {"sparse-room", TEST_PACKS "/room.cfg", "--indirect-samples 16"},
+    {"sparse-buckets", TEST_PACKS "/room.cfg", "--estimate buckets --indirect-samples 4"},
+    {"nearest", TEST_PACKS "/room.cfg", "--texture-filter nearest"},
+    {"trilinear", TEST_PACKS "/room.cfg", "--texture-filter trilinear"},
     {"still", TEST_PACKS "/still.cfg", ""},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
     {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},

@@ -61,7 +61,7 @@ static vit_status refuse(const cost_results *r, const fit_budget *b, uint32_t cl
     return VIT_BUDGET;
 }
 
-vit_status fit_choose(const cost_results *r, const fit_budget *b, const bool *leave_out, uint32_t *chosen, vit_text *why) {
+vit_status fit_choose(const cost_results *r, const fit_budget *b, uint32_t *chosen, vit_text *why) {
     uint32_t best = r->count, closest = r->count;
     if (b->work > 0 && r->work_count == 0) {
         snprintf(why->text, sizeof why->text, "this build counts no work: only a budget in milliseconds can be fitted");
@@ -69,7 +69,7 @@ vit_status fit_choose(const cost_results *r, const fit_budget *b, const bool *le
     }
     for (uint32_t i = 0; i < r->count; i++) {
         const cost_setting *s = &r->settings[i];
-        if (s->elsewhere || (leave_out && leave_out[i]))
+        if (s->elsewhere)
             continue;
         if (closest == r->count || price(s, b) < price(&r->settings[closest], b))
             closest = i;

@@ -16,10 +16,10 @@ typedef struct fit_budget {
  * nothing. `names`: of the `count` kinds, as vit_statistics has them. */
 uint64_t fit_work_units(const cost_setting *s, const char *const *names, uint32_t count);
 
-/* Index of the most accurate setting within the budget, among those that a quality block can hold and that `leave_out` (one
- * flag a setting, NULL: none) does not; of equally accurate ones the cheaper, then the first. VIT_BUDGET: none fits; the text
+/* Index of the most accurate setting within the budget, among those that a quality block can hold; of equally
+ * accurate ones the cheaper, then the first. VIT_BUDGET: none fits; the text
  * names the one that misses by least and by how much. VIT_FAILED: work was not counted. */
-vit_status fit_choose(const cost_results *r, const fit_budget *budget, const bool *leave_out, uint32_t *chosen, vit_text *why);
+vit_status fit_choose(const cost_results *r, const fit_budget *budget, uint32_t *chosen, vit_text *why);
 
 /* The front and the choice as a table of plain text. */
 void fit_print(const cost_results *r, const fit_budget *budget, uint32_t chosen, FILE *to);

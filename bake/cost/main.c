@@ -1,16 +1,13 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
 #include "cost_options.h"
 #include "fit.h"
+#include "machine.h"
 #include "report.h"
 #include "rewrite.h"
 #include "spread.h"
 #include "sweep.h"
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* Set by Ctrl-C and SIGTERM; the sweep looks at it between steps, and unfinished references are kept. */
 static volatile sig_atomic_t cancel;
@@ -25,27 +22,6 @@ static void catch_signals(void) {
     struct sigaction stop = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
-}
-
-/* Makes the default cache folder; NULL: there is no home for it. */
-static const char *default_cache(char *folder, size_t room) {
-    const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    const bool xdg = base && base[0] == '/';
-    if (!xdg && !(home && home[0] == '/'))
-        return NULL;
-    const int used = snprintf(folder, room, "%s%s", xdg ? base : home, xdg ? "" : "/.cache");
-    if (used < 0 || (size_t)used + 9 >= room)
-        return NULL;
-    (void)mkdir(folder, 0777);
-    (void)snprintf(folder + used, room - (size_t)used, "/vitrine");
-    return mkdir(folder, 0777) == 0 || errno == EEXIST ? folder : NULL;
-}
-
-static uint64_t memory_of(const cost_options *o) {
-    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-    if (o->memory > 0)
-        return (uint64_t)o->memory << 20;
-    return pages > 0 && page > 0 ? (uint64_t)pages / 4 * (uint64_t)page : (uint64_t)1 << 30;
 }
 
 static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
@@ -65,7 +41,7 @@ static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
 static vit_status fit(const cost_options *o, const cost_results *r, vit_text *why) {
     const fit_budget budget = {.ms = o->fit, .work = (uint64_t)o->fit_work, .relmse = o->relmse};
     uint32_t chosen;
-    vit_status status = fit_choose(r, &budget, NULL, &chosen, why);
+    vit_status status = fit_choose(r, &budget, &chosen, why);
     if (status == VIT_OK || status == VIT_BUDGET)
         fit_print(r, &budget, chosen, stdout);
     if (status != VIT_OK)
@@ -81,13 +57,13 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
                             .settings = o->settings,
                             .frame = o->frame,
                             .every = o->every,
-                            .repeats = o->repeats,
+                            .repeats = o->output || o->fit > 0 ? o->repeats : 0, /* work needs no times */
                             .reference_error = o->reference_error,
                             .max_samples = o->max_samples,
                             .cache = o->no_cache ? NULL
                                      : o->cache  ? o->cache
-                                                 : default_cache(folder, sizeof folder),
-                            .memory = memory_of(o),
+                                                 : machine_cache_folder(folder, sizeof folder),
+                            .memory = o->memory > 0 ? (uint64_t)o->memory << 20 : machine_memory(),
                             .cancel = &cancel};
     vit_status status = o->write ? rewrite_check(o->write, why) : VIT_OK; /* before the work rather than after it */
     if (status == VIT_OK)

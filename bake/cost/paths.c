@@ -123,10 +123,10 @@ static bool survives(double weight[3], uint32_t random) {
     return true;
 }
 
-/* Path i of the set. weight: albedos on the way, so that weight * irradiance is the first hit's irradiance by this path (cosine
- * sampling cancels cosines and 1 / pi). */
-static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, uint32_t count, bool only_limited,
-                  path_sums *out, uint64_t *rays) {
+/* Path i of the sequence. weight: albedos on the way, so that weight * irradiance is the first hit's irradiance by this path
+ * (cosine sampling cancels cosines and 1 / pi). */
+static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited, path_sums *out,
+                  uint64_t *rays) {
     double weight[3] = {1, 1, 1};
     vec3 o = v->position, n = v->normal;
     for (uint32_t hit = 1; hit < p->bounces || !only_limited; hit++) {
@@ -134,7 +134,7 @@ static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint
         const uint32_t dimension = pcg(seed ^ pcg(hit));
         if (hit >= p->bounces && !survives(weight, pcg(dimension ^ pcg(i + 0x5bd1e995u))))
             return;
-        sequence_point(dimension, i, count, &a, &b);
+        sequence_point(dimension, i, &a, &b);
         const vec3 d = cosine_direction(n, a, b);
         if (hit == 1 && !(vec3_dot(d, v->face) > 0.0f))
             return;
@@ -160,14 +160,14 @@ static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint
     }
 }
 
-void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t count, bool only_limited, path_sums *out,
-                 uint64_t *rays) {
+void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
+                 path_sums *out, uint64_t *rays) {
     path_sums sums = {.limited = {0}};
     *out = sums;
     if (!v->hit)
         return;
-    for (uint32_t i = 0; i < count; i++)
-        trace(p, v, seed, i, count, only_limited, &sums, rays);
+    for (uint32_t i = first; i < first + count; i++)
+        trace(p, v, seed, i, only_limited, &sums, rays);
     const double albedo[3] = {(double)v->albedo.x, (double)v->albedo.y, (double)v->albedo.z};
     for (int k = 0; k < 3; k++) {
         const double scale = albedo[k] / 3.14159265358979323846 * (double)p->camera->exposure;

@@ -37,8 +37,8 @@ typedef struct path_sums {
     double unlimited[3]; /* of all, ended by Russian roulette; not computed if only_limited */
 } path_sums;
 
-/* seed names the set of `count` paths, a power of two. `rays` is added to. */
-void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t count, bool only_limited, path_sums *out,
-                 uint64_t *rays);
+/* Paths first .. first + count - 1 of the sequence that `seed` names (sequence.h). `rays` is added to. */
+void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
+                 path_sums *out, uint64_t *rays);
 
 #endif

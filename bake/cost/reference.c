@@ -1,4 +1,4 @@
-/* Rounds of one batch of paths a pixel, until the standard error is small enough. A pixel's numbers come from its own paths in
+/* Rounds of some paths a pixel, until the standard error is small enough. A pixel's numbers come from its own paths in
  * a fixed order, so that neither threads nor ranks show. */
 #define _POSIX_C_SOURCE 200809L
 #include "chunks.h"
@@ -10,19 +10,19 @@
 #include <string.h>
 #include <time.h>
 
-#define CHUNK 32u /* pixels that a thread takes at a time */
-#define MIN_BATCHES (REFERENCE_MIN_SAMPLES / REFERENCE_BATCH)
-#define SAVE_SECONDS 30.0 /* between writes of an unfinished reference */
+#define CHUNK 32u                                     /* pixels that a thread takes at a time */
+#define PATHS (REFERENCE_ROUND / REFERENCE_SEQUENCES) /* a sequence and round */
+#define SAVE_SECONDS 30.0                             /* between writes of an unfinished reference */
 
 typedef struct rendering {
     const reference_input *in;
     path_scene scene;
     reference_state state;
     view_sample *views;    /* of the rank's own pixels */
-    path_sums *batch;      /* means of this round's batch; zero for other ranks' pixels until they are gathered */
-    uint32_t chunks, most; /* most: batches */
+    pixel_sums *round;     /* sums of this round; zero for other ranks' pixels until they are gathered */
+    uint32_t chunks, most; /* most: rounds */
     double began, spent;   /* clock; seconds of earlier runs */
-    double error;          /* so far, of state.batches >= MIN_BATCHES */
+    double error;          /* so far */
     double first_share;    /* of the work that was done before this run, for the time left */
 } rendering;
 
@@ -51,43 +51,39 @@ static uint32_t chunk_end(const rendering *r, uint32_t chunk) {
 
 static void view_chunk(void *user, uint32_t chunk, uint64_t *rays) {
     rendering *r = user;
-    for (uint32_t i = chunk * CHUNK; i < chunk_end(r, chunk); i++) {
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(r, chunk); i++)
         paths_view(&r->scene, pixel_x(r, i), pixel_y(r, i), r->views + i, rays);
-        memcpy(r->batch[i].limited, r->views[i].direct, sizeof r->batch[i].limited);
-    }
 }
 
 static void path_chunk(void *user, uint32_t chunk, uint64_t *rays) {
     rendering *r = user;
-    const uint32_t batch = r->state.batches;
     for (uint32_t i = chunk * CHUNK; i < chunk_end(r, chunk); i++) {
-        const uint32_t seed = pcg(pixel_x(r, i) ^ pcg(pixel_y(r, i) ^ pcg(batch ^ pcg(r->in->frame))));
-        paths_trace(&r->scene, r->views + i, seed, REFERENCE_BATCH, false, r->batch + i, rays);
-        for (int k = 0; k < 3; k++) {
-            r->batch[i].limited[k] /= REFERENCE_BATCH;
-            r->batch[i].unlimited[k] /= REFERENCE_BATCH;
-        }
+        const uint32_t seed = pcg(pixel_x(r, i) ^ pcg(pixel_y(r, i) ^ pcg(r->in->frame)));
+        memcpy(r->round[i].direct, r->views[i].direct, sizeof r->round[i].direct);
+        for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+            paths_trace(&r->scene, r->views + i, pcg(seed + q), r->state.rounds * PATHS, PATHS, false, r->round[i].paths + q,
+                        rays);
     }
 }
 
-/* Batches that the target will take, as far as is known. */
-static double batches_needed(const rendering *r) {
-    if (r->state.batches < MIN_BATCHES)
+/* Rounds that the target will take, as far as is known. */
+static double rounds_needed(const rendering *r) {
+    if (r->state.rounds == 0)
         return r->most;
-    const double needed = r->state.batches * r->error / r->in->target;
-    return needed < r->most ? (needed > r->state.batches ? needed : r->state.batches + 1.0) : r->most;
+    const double needed = r->state.rounds * r->error / r->in->target;
+    return needed < r->most ? (needed > r->state.rounds ? needed : r->state.rounds + 1.0) : r->most;
 }
 
 static void report(void *user, double of_round) {
     const rendering *r = user;
-    const double share = (r->state.batches + of_round) / batches_needed(r), took = now() - r->began;
+    const double share = (r->state.rounds + of_round) / rounds_needed(r), took = now() - r->began;
     if (!r->in->progress)
         return;
     const double fraction = share < 1 ? share : 1, done = fraction - r->first_share;
     r->in->progress(r->in->user, fraction, done > 0 ? took / done * (1 - fraction) : 0);
 }
 
-/* One function over this rank's chunks; what all ranks found ends in r->batch. False: cancelled. */
+/* One function over this rank's chunks; what all ranks found ends in r->round. False: cancelled. */
 static bool run_chunks(rendering *r, void (*run)(void *, uint32_t, uint64_t *), bool reports) {
     const chunk_work w = {.run = run,
                           .done = reports ? report : NULL,
@@ -98,11 +94,11 @@ static bool run_chunks(rendering *r, void (*run)(void *, uint32_t, uint64_t *), 
                           .threads = chunks_threads(r->in->threads, spread_neighbours()),
                           .cancel = r->in->cancel};
     uint64_t rays = 0;
-    memset(r->batch, 0, r->state.pixels * sizeof *r->batch);
+    memset(r->round, 0, r->state.pixels * sizeof *r->round);
     const bool whole = chunks_run(&w, &rays);
     if (spread_any(!whole))
         return false;
-    spread_gather((double *)r->batch, (size_t)r->state.pixels * (sizeof *r->batch / sizeof(double)));
+    spread_gather((double *)r->round, (size_t)r->state.pixels * (sizeof *r->round / sizeof(double)));
     r->state.rays += spread_sum(rays);
     return true;
 }
@@ -119,11 +115,11 @@ static vit_status load(rendering *r, vit_text *why) {
     }
     if (spread_any(status != VIT_OK))
         return status == VIT_OK ? fail(why, VIT_FAILED, "rank 0 cannot write its cache") : status;
-    uint64_t shared[3] = {s->key, s->batches, s->rays};
+    uint64_t shared[3] = {s->key, s->rounds, s->rays};
     spread_share(shared, sizeof shared);
     if (spread_any(shared[0] != s->key))
         return fail(why, VIT_BAD_INPUT, "the ranks have different scenes");
-    s->batches = (uint32_t)shared[1];
+    s->rounds = (uint32_t)shared[1];
     s->rays = shared[2];
     spread_share(&s->seconds, sizeof s->seconds);
     spread_share(s->sums, s->pixels * sizeof *s->sums);
@@ -144,23 +140,37 @@ static vit_status save(rendering *r, bool always, double *saved, vit_text *why) 
     return VIT_OK;
 }
 
+static bool finished(const rendering *r) {
+    return r->state.rounds > 0 && (r->state.rounds >= r->most || r->error <= r->in->target);
+}
+
 static vit_status trace_rounds(rendering *r, vit_text *why) {
-    const uint32_t before = r->state.batches;
+    const uint32_t before = r->state.rounds;
     double saved = now();
-    r->error = state_error(&r->state);
-    r->first_share = r->state.batches / batches_needed(r);
-    while (r->state.batches < MIN_BATCHES || (r->state.batches < r->most && r->error > r->in->target)) {
+    r->first_share = r->state.rounds / rounds_needed(r);
+    while (!finished(r)) {
         if (!run_chunks(r, path_chunk, true)) {
-            const vit_status status = r->state.batches > before ? save(r, true, &saved, why) : VIT_OK;
+            const vit_status status = r->state.rounds > before ? save(r, true, &saved, why) : VIT_OK;
             return status == VIT_OK ? fail(why, VIT_FAILED, "interrupted") : status;
         }
-        state_add(&r->state, r->batch);
+        state_add(&r->state, r->round);
         r->error = state_error(&r->state);
         const vit_status status = save(r, false, &saved, why);
         if (status != VIT_OK)
             return status;
     }
-    return r->state.batches > before ? save(r, true, &saved, why) : VIT_OK;
+    return save(r, true, &saved, why);
+}
+
+/* View samples, once a run: their rays count in the first. */
+static vit_status trace(rendering *r, vit_text *why) {
+    const uint64_t rays = r->state.rays;
+    r->began = now();
+    if (!run_chunks(r, view_chunk, false))
+        return fail(why, VIT_FAILED, "interrupted");
+    if (r->state.rounds > 0)
+        r->state.rays = rays;
+    return trace_rounds(r, why);
 }
 
 static vit_status check(const reference_input *in, vit_text *why) {
@@ -171,6 +181,8 @@ static vit_status check(const reference_input *in, vit_text *why) {
         return fail(why, VIT_BAD_INPUT, "no pixel is on the grid: `every` is 0 or beyond the frame's size");
     if (in->bounces == 0 || !(in->target > 0))
         return fail(why, VIT_BAD_INPUT, "`bounces` and `target` must be positive");
+    if (in->max_samples == 0 || in->max_samples > REFERENCE_MOST)
+        return fail(why, VIT_BAD_INPUT, "`max_samples` is out of range");
     return VIT_OK;
 }
 
@@ -182,15 +194,14 @@ static uint32_t grid_size(uint32_t size, uint32_t every) {
 static vit_status make_room(rendering *r, vit_text *why) {
     const vit_scene *s = r->in->sections->data[VIT_SECTION_META];
     const uint32_t width = grid_size(s->width, r->in->every), height = grid_size(s->height, r->in->every);
-    const double batches = r->in->max_samples / (double)REFERENCE_BATCH;
-    r->most = batches > MIN_BATCHES ? (uint32_t)batches + (r->in->max_samples % REFERENCE_BATCH > 0) : MIN_BATCHES;
+    r->most = (r->in->max_samples + REFERENCE_ROUND - 1) / REFERENCE_ROUND;
     const vit_status status = state_make(width, height, &r->state, why);
     if (status != VIT_OK)
         return status;
     r->chunks = (r->state.pixels + CHUNK - 1) / CHUNK;
     r->views = calloc(r->state.pixels, sizeof *r->views);
-    r->batch = calloc(r->state.pixels, sizeof *r->batch);
-    return r->views && r->batch ? VIT_OK : fail(why, VIT_FAILED, "out of memory");
+    r->round = calloc(r->state.pixels, sizeof *r->round);
+    return r->views && r->round ? VIT_OK : fail(why, VIT_FAILED, "out of memory");
 }
 
 static vit_status render(rendering *r, reference *out, vit_text *why) {
@@ -202,15 +213,13 @@ static vit_status render(rendering *r, reference *out, vit_text *why) {
         status = load(r, why);
     if (status != VIT_OK)
         return status;
-    if (!paths_open(r->in, threads, &r->scene))
-        return fail(why, VIT_FAILED, "Embree fails");
-    r->began = now();
-    if (run_chunks(r, view_chunk, false)) {
-        state_direct(&r->state, r->batch);
-        status = trace_rounds(r, why);
-    } else
-        status = fail(why, VIT_FAILED, "interrupted");
-    paths_close(&r->scene);
+    r->error = state_error(&r->state);
+    if (!finished(r)) {
+        if (!paths_open(r->in, threads, &r->scene))
+            return fail(why, VIT_FAILED, "Embree fails");
+        status = trace(r, why);
+        paths_close(&r->scene);
+    }
     return status == VIT_OK ? state_finish(&r->state, out, why) : status;
 }
 
@@ -220,7 +229,7 @@ vit_status reference_render(const reference_input *in, reference *out, vit_text 
     const vit_status status = render(&r, out, why);
     state_free(&r.state);
     free(r.views);
-    free(r.batch);
+    free(r.round);
     return status;
 }
 

@@ -23,7 +23,7 @@ typedef struct reference_input {
     uint32_t every;   /* pixels (every * i + every / 2, every * j + every / 2) of the frame; 1: all */
     uint32_t bounces; /* hits of the limited paths: up to bounces - 1 reflections, as vit_scene.bounces */
     double target;    /* stop when the standard error's NMSE (mean variance / squared mean of the total) is below this, > 0 */
-    uint32_t max_samples; /* and at so many paths a pixel in any case (at least REFERENCE_MIN_SAMPLES; rounded up to batches) */
+    uint32_t max_samples; /* and at so many paths a pixel in any case; whole rounds, 1 .. REFERENCE_MOST */
     unsigned threads;  /* 0: all cores, shared with the ranks on this machine; changes no bit, nor does the number of ranks */
     const char *cache; /* folder for finished and unfinished references, NULL: none. One there may have more samples */
     const volatile sig_atomic_t *cancel; /* a signal handler sets it: the work is saved and VIT_FAILED returned; may be NULL */
@@ -31,10 +31,12 @@ typedef struct reference_input {
     void *user;
 } reference_input;
 
-#define REFERENCE_BATCH 16u /* paths of a batch: they share one low-discrepancy set; variance is that between batches */
-#define REFERENCE_MIN_SAMPLES 32u
+/* A pixel has so many low-discrepancy sequences, independent of each other: variance is that between their means, with one
+ * degree of freedom less. Each round adds a few paths to each. */
+#define REFERENCE_SEQUENCES 4u
+#define REFERENCE_ROUND 16u       /* paths a pixel and round */
+#define REFERENCE_MOST (1u << 18) /* paths a pixel, at most */
 
-/* Images: 3 doubles (red, green, blue) a pixel of the grid, row by row from the top. */
 typedef struct reference {
     uint32_t width, height;   /* of the grid */
     uint32_t samples;         /* paths a pixel */
@@ -52,5 +54,23 @@ typedef struct reference {
  * written, cancelled. All ranks of an MPI run (spread.h) call it with the same input and all get the result. */
 vit_status reference_render(const reference_input *in, reference *out, vit_text *why);
 void reference_free(reference *r);
+
+/* reference_time.c: how long the same path tracer takes for one path a pixel of the whole frame (camera ray, direct light, one
+ * limited path), on all `threads` of this rank alone, so that the error of a time can be compared with the runtime's. Open it
+ * once and take frames in turn with what it is compared with; each has random numbers of its own. */
+typedef struct reference_timer reference_timer;
+typedef struct reference_timing {
+    double ms;           /* of a frame, scene building not included */
+    double nmse, relmse; /* of direct + limited at one path a pixel, against `truth`, on its grid; they fall as 1 / paths */
+    uint64_t rays;       /* of that frame */
+} reference_timing;
+
+/* `truth`: of the same input; both must stay until reference_timer_close(). */
+vit_status reference_timer_open(const reference_input *in, const reference *truth, reference_timer **out, vit_text *why);
+reference_timing reference_timer_frame(reference_timer *t);
+void reference_timer_close(reference_timer *t);
+/* All in one: the median of `frames` frames' times and rays, the means of their errors. */
+vit_status reference_time(const reference_input *in, const reference *truth, uint32_t frames, reference_timing *out,
+                          vit_text *why);
 
 #endif

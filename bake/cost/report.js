@@ -119,7 +119,7 @@
   }
   settings.forEach((setting, index) => option(by("setting"), index));
   by("setting").addEventListener("change", (e) => choose(Number(e.target.value)));
-  document.querySelectorAll("tr[data-setting]").forEach(function (row) {
+  document.querySelectorAll("tr[data-setting], .key li").forEach(function (row) {
     row.addEventListener("click", () => choose(Number(row.dataset.setting)));
   });
 
@@ -136,7 +136,7 @@
     const svg = figure.querySelector("svg");
     if (!svg) return;
     const words = (text) => text.split(" ").filter(Boolean).map(Number);
-    [[1, words(figure.dataset.others)], [3, words(figure.dataset.front)], [4, [0]]].forEach(function (set) {
+    [[1, words(figure.dataset.others)], [3, words(figure.dataset.front)], [4, [0]], [5, words(figure.dataset.elsewhere)]].forEach(function (set) {
       const uses = svg.querySelectorAll("#" + svg.id + "-gnuplot_plot_" + set[0] + " use");
       if (uses.length === set[1].length) uses.forEach((use, i) => name(use, set[1][i]));
     });

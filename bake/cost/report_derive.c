@@ -17,6 +17,10 @@ bool report_on_front(const cost_setting *s, report_measure by) {
     return by == REPORT_NMSE ? s->front : s->front_relmse;
 }
 
+report_drawn report_set(const cost_setting *s, report_measure by) {
+    return report_on_front(s, by) ? REPORT_FRONT : s->elsewhere ? REPORT_ELSEWHERE : REPORT_OTHERS;
+}
+
 uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {
@@ -39,10 +43,15 @@ double report_equal_ms(const cost_results *r, const cost_setting *s, report_meas
     return r->path_tracer_ms > 0 ? r->path_tracer_ms * report_equal_paths(r, s, by) : (double)NAN;
 }
 
+/* Standard error of a median: 1.253 (for normal noise) x 1.4826 MAD / sqrt(frames). */
+static double median_error(const cost_setting *s) {
+    return 1.858 * s->ms_mad / sqrt(s->timed > 0 ? s->timed : 1);
+}
+
 static report_price price_of(const cost_results *r, uint32_t i, report_measure by) {
     const cost_setting *s = &r->settings[i], *d = &r->settings[0];
     report_price p = {.setting = i, .ms = s->ms - d->ms, .error = report_error(s, by) - report_error(d, by)};
-    p.timed = fabs(p.ms) > 2 * (s->ms_mad + d->ms_mad);
+    p.timed = fabs(p.ms) > 2 * hypot(median_error(s), median_error(d));
     const bool slower = p.timed && p.ms > 0, faster = p.timed && p.ms < 0;
     p.kind = p.error < 0   ? (slower ? REPORT_BUYS : REPORT_GAIN)
              : p.error > 0 ? (faster ? REPORT_SAVES : REPORT_LOSES)

@@ -94,6 +94,7 @@ bool report_look(const cost_results *r, FILE *to) {
         return false;
     if (p.count == 0) {
         (void)fputs("<p>The results hold no images.</p>\n", to);
+        report_pictures_free(&p);
         return true;
     }
     (void)fprintf(to,

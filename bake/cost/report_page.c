@@ -2,6 +2,7 @@
 #include "report_parts.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void print_head(const cost_results *r, FILE *to) {
@@ -45,32 +46,48 @@ static void print_facts(const cost_results *r, FILE *to) {
     (void)fputs("</section>\n", to);
 }
 
-/* Indices of the points in each of the plot's data sets, as report_plots.c prints them, so that report.js can name them. */
-static void print_series(const cost_results *r, report_measure by, FILE *to) {
-    (void)fputs("<figure class=\"chart\" data-others=\"", to);
+/* Indices of the points in each of the plot's data sets, in the order of report_plots.c (the front by time), so that report.js
+ * can name them. */
+static bool print_series(const cost_results *r, report_measure by, FILE *to) {
+    uint32_t *front = malloc(r->count * sizeof front[0]);
+    if (!front)
+        return false;
+    const uint32_t count = report_front(r, by, front);
+    (void)fputs("<figure class=\"chart\" data-front=\"", to);
+    for (uint32_t k = 0; k < count; k++)
+        if (front[k] != 0)
+            (void)fprintf(to, "%" PRIu32 " ", front[k]);
+    (void)fputs("\" data-others=\"", to);
     for (uint32_t i = 1; i < r->count; i++)
-        if (!report_on_front(&r->settings[i], by))
+        if (report_set(&r->settings[i], by) == REPORT_OTHERS)
             (void)fprintf(to, "%" PRIu32 " ", i);
-    (void)fputs("\" data-front=\"", to);
+    (void)fputs("\" data-elsewhere=\"", to);
     for (uint32_t i = 1; i < r->count; i++)
-        if (report_on_front(&r->settings[i], by))
+        if (report_set(&r->settings[i], by) == REPORT_ELSEWHERE)
             (void)fprintf(to, "%" PRIu32 " ", i);
     (void)fputs("\">\n", to);
+    free(front);
+    return true;
 }
 
 static vit_status print_error_plots(const cost_results *r, FILE *to, vit_text *why) {
     (void)fputs("<section id=\"error-time\"><h2>Error against time</h2>\n<p>Down and left is better. No setting is at once "
-                "faster and nearer to the "
-                "reference than one on the <b class=\"front\">Pareto front</b>; the line is the best error that each time "
-                "buys. Both axes are "
-                "logarithmic. <span class=\"js\">Point at a dot for its name; click for its details.</span></p>\n"
+                "faster and nearer "
+                "to the reference than one on the <b class=\"front\">Pareto front</b>; the line is the best error that each "
+                "time buys. Both "
+                "axes are logarithmic. <span class=\"js\">Point at a dot for its name; click for its details.</span></p>\n"
                 "<ul class=\"legend\"><li><i class=\"dot\" style=\"background:var(--c5)\"></i>on the front</li>"
-                "<li><i class=\"dot\" style=\"background:var(--c6)\"></i>default</li><li><i class=\"dot\" "
-                "style=\"background:var(--c4)\"></i>others</li></ul>\n",
+                "<li><i class=\"dot\" style=\"background:var(--c6)\"></i>default</li>"
+                "<li><i class=\"dot\" style=\"background:var(--c4)\"></i>others</li>"
+                "<li><i class=\"dot\" style=\"border:2px solid var(--c4)\"></i>another output size or lanes: no part of the "
+                "front</li></ul>\n",
                 to);
     vit_status status = VIT_OK;
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE && status == VIT_OK; by++) {
-        print_series(r, by, to);
+        if (!print_series(r, by, to)) {
+            (void)snprintf(why->text, sizeof why->text, "report: out of memory");
+            return VIT_FAILED;
+        }
         status = report_plot_error(r, by, to, why);
         (void)fprintf(to, "<figcaption>%s</figcaption></figure>\n",
                       by == REPORT_NMSE ? "NMSE: errors in bright places weigh most."
@@ -93,8 +110,8 @@ static void print_prices(const cost_results *r, FILE *to) {
         "quotient is the error "
         "bought with a millisecond: the more the better, best first. Where it is further off and faster, it is the error paid "
         "for a "
-        "millisecond saved: the less the better, best first. Times in brackets differ by less than twice the median absolute "
-        "deviations of both: no difference that can be told from noise.</p>\n<div class=\"pair\">\n",
+        "millisecond saved: the less the better, best first. Times in brackets differ by less than twice their standard error: "
+        "no difference that can be told from noise.</p>\n<div class=\"pair\">\n",
         to);
     report_table_prices(r, REPORT_NMSE, to);
     report_table_prices(r, REPORT_RELMSE, to);
@@ -107,13 +124,22 @@ static vit_status print_time(const cost_results *r, FILE *to, vit_text *why) {
                 "timed without looking at passes. Blue names are on a front; the dashed line is the default.</p>\n<figure "
                 "class=\"chart\">\n",
                 to);
-    vit_status status = report_plot_stack(r, to, why);
-    (void)fputs(
-        "</figure>\n</section>\n<section id=\"tracer\"><h2>Beside a path tracer</h2>\n<p>The dashed line is the "
-        "reference\xE2\x80\x99s path tracer (Embree), "
-        "timed in the same run between the settings: its error falls as one over its time. Circles are paths a pixel.</p>\n"
-        "<div class=\"pair\">\n",
-        to);
+    const vit_status status = report_plot_stack(r, to, why);
+    (void)fputs("</figure>\n</section>\n", to);
+    return status;
+}
+
+static vit_status print_tracer(const cost_results *r, FILE *to, vit_text *why) {
+    vit_status status = VIT_OK;
+    (void)fputs("<section id=\"tracer\"><h2>Beside a path tracer</h2>\n", to);
+    if (!(r->path_tracer_ms > 0)) {
+        (void)fputs("<p>The path tracer was not timed.</p></section>\n", to);
+        return VIT_OK;
+    }
+    (void)fputs("<p>The dashed line is the reference\xE2\x80\x99s path tracer (Embree), timed in the same run between the "
+                "settings: its error "
+                "falls as one over its time. Circles are paths a pixel.</p>\n<div class=\"pair\">\n",
+                to);
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE && status == VIT_OK; by++) {
         (void)fputs("<figure class=\"chart small\">\n", to);
         status = report_plot_tracer(r, by, to, why);
@@ -131,16 +157,16 @@ static void print_details(const cost_results *r, FILE *to) {
                 "Work is the weighted sum of exact counts, equal on every device.</p>\n",
                 to);
     report_table_settings(r, to);
-    (void)fputs("</section>\n<section id=\"passes\"><h2>Passes and exact work of one setting</h2>\n<noscript><p>This table "
-                "needs JavaScript; "
-                "report.json has the same numbers.</p></noscript>\n"
-                "<div class=\"controls js\"><label>Setting <select id=\"setting\"></select></label></div>\n<p id=\"values\" "
-                "class=\"values\"></p>\n"
-                "<div class=\"wide\"><table id=\"pass-table\" class=\"js\"></table></div>\n</section>\n"
-                "<section id=\"bounces\"><h2>What the bounce limit leaves out</h2>\n<p>The same paths, with and without the "
-                "limit: this error "
-                "stays however many photons there are.</p>\n",
-                to);
+    (void)fputs(
+        "</section>\n<section id=\"passes\"><h2>Passes and exact work of one setting</h2>\n<noscript><p>This table "
+        "needs JavaScript; "
+        "report.json has the same numbers.</p></noscript>\n"
+        "<div class=\"controls js\"><label>Setting <select id=\"setting\"></select></label></div>\n<p id=\"values\" "
+        "class=\"values\"></p>\n"
+        "<div class=\"wide\"><table id=\"pass-table\" class=\"js\"></table></div>\n</section>\n"
+        "<section id=\"bounces\"><h2>What the error is made of</h2>\n<p>Of the default. What the bounce limit leaves out stays "
+        "however many photons there are; direct light is computed, not estimated: its error should be next to nothing.</p>\n",
+        to);
     report_table_errors(r, to);
     (void)fputs("</section>\n", to);
 }
@@ -177,6 +203,8 @@ vit_status report_page(const cost_results *r, FILE *to, vit_text *why) {
         return status;
     print_prices(r, to);
     status = print_time(r, to, why);
+    if (status == VIT_OK)
+        status = print_tracer(r, to, why);
     if (status != VIT_OK)
         return status;
     (void)fputs("<section id=\"look\"><h2>Look at it</h2>\n", to);

@@ -23,6 +23,9 @@ typedef enum report_measure { REPORT_NMSE, REPORT_RELMSE } report_measure;
 const char *report_measure_name(report_measure by);
 double report_error(const cost_setting *s, report_measure by); /* total light */
 bool report_on_front(const cost_setting *s, report_measure by);
+/* How a setting but the default is drawn. */
+typedef enum report_drawn { REPORT_OTHERS, REPORT_FRONT, REPORT_ELSEWHERE } report_drawn;
+report_drawn report_set(const cost_setting *s, report_measure by);
 /* Indices of the front's settings, fastest first; `out` has room for r->count. */
 uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out);
 /* Milliseconds until the path tracer's error is the setting's; NAN where either is unknown or 0. */
@@ -31,11 +34,11 @@ double report_equal_paths(const cost_results *r, const cost_setting *s, report_m
 
 /* What one knob does to the default: X(name, meaning), best first. */
 #define REPORT_KINDS(X)                                                                                                        \
-    X(GAIN, "Nearer to the reference and no slower")                                                                           \
+    X(GAIN, "Nearer to the reference and not measurably slower")                                                               \
     X(BUYS, "Nearer and slower: error bought for time")                                                                        \
     X(SAVES, "Further off and faster: time saved for error")                                                                   \
     X(SAME, "The same error: only time differs")                                                                               \
-    X(LOSES, "Further off and no faster")
+    X(LOSES, "Further off and not measurably faster")
 typedef enum report_kind {
 #define X(name, meaning) REPORT_##name,
     REPORT_KINDS(X)
@@ -45,7 +48,7 @@ typedef struct report_price {
     uint32_t setting;
     report_kind kind;
     double ms, error; /* the setting's less the default's */
-    bool timed;       /* |ms| is more than twice both median absolute deviations: a difference that is no noise */
+    bool timed;       /* |ms| is more than twice its standard error: a difference that is no noise */
     double rate;      /* |error| / |ms|, 0 unless BUYS or SAVES */
 } report_price;
 /* The settings that differ from the default in one knob: kinds in the order above, within BUYS the most error a millisecond

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_MOST = 30, MARKS = 12 };
+/* Names of up to NAME_MOST characters stand at up to NAMES points of a front; more or longer ones are numbers with a key. */
+enum { NAME_MOST = 40, NAMES = 9, MARKS = 12 };
 
 /* The area between the axes, in pixels of the drawing. */
 typedef struct plot {
@@ -50,12 +51,12 @@ static void print_frame(const plot *p, FILE *to) {
     report_axis_print(to, "y", p->y, title);
 }
 
-/* Data of the plots: others, the front's stair, the front's points, the default. An empty set gets a point that is not drawn.
- */
+/* Data of the plots: others, the front's stair, the front's points, the default, those that differ elsewhere than in the
+ * quality block. Each begins with a point that is not drawn: gnuplot wants one. */
 static void print_data(const plot *p, FILE *to) {
     (void)fputs("$others << EOD\nNaN NaN\n", to);
     for (uint32_t i = 1; i < p->r->count; i++)
-        if (drawn(p, i) && !report_on_front(&p->r->settings[i], p->by))
+        if (drawn(p, i) && report_set(&p->r->settings[i], p->by) == REPORT_OTHERS)
             (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
     (void)fputs("EOD\n$stair << EOD\nNaN NaN\n", to);
     for (uint32_t k = 0; k < p->front_count; k++) {
@@ -73,15 +74,20 @@ static void print_data(const plot *p, FILE *to) {
     (void)fputs("EOD\n$default << EOD\nNaN NaN\n", to);
     if (drawn(p, 0))
         (void)fprintf(to, "%.9g %.9g\n", ms_of(p, 0), error_of(p, 0));
+    (void)fputs("EOD\n$elsewhere << EOD\nNaN NaN\n", to);
+    for (uint32_t i = 1; i < p->r->count; i++)
+        if (drawn(p, i) && report_set(&p->r->settings[i], p->by) == REPORT_ELSEWHERE)
+            (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
     (void)fputs("EOD\n", to);
 }
 
-/* In gnuplot's order 1, 2, 3, 4: report.js finds the points by it. */
+/* In gnuplot's order 1 to 5: report.js finds the points by it. */
 static void print_plot(FILE *to) {
     (void)fprintf(to,
                   "plot $others with points pt 7 ps 0.75 lc rgb '#0101%02x', $stair with steps lw 1.6 lc rgb '#0101%02x', "
-                  "$front with points pt 7 ps 1.0 lc rgb '#0101%02x', $default with points pt 13 ps 1.5 lc rgb '#0101%02x'",
-                  DOT, FRONT, FRONT, DEFAULT);
+                  "$front with points pt 7 ps 1.0 lc rgb '#0101%02x', $default with points pt 13 ps 1.5 lc rgb '#0101%02x', "
+                  "$elsewhere with points pt 6 ps 0.75 lw 2 lc rgb '#0101%02x'",
+                  DOT, FRONT, FRONT, DEFAULT, DOT);
 }
 
 /* Everything drawn: points as small boxes, the front's stair as segments. Returns how many; `out` has room for 3 a setting
@@ -116,6 +122,34 @@ static void print_label(const plot *p, const report_label *l, const char *name, 
     (void)fprintf(to, " at screen %.6f,%.6f left tc rgb '#0101%02x'\n", l->left / w, 1 - (l->top + l->height / 2) / h, colour);
 }
 
+static bool numbered(const plot *p) {
+    bool longer = p->front_count > NAMES;
+    for (uint32_t k = 0; k < p->front_count; k++)
+        longer = longer || text_length(p->r->settings[p->front[k]].name) > NAME_MOST;
+    return longer;
+}
+
+/* What stands at a setting's point. */
+static void name_point(const plot *p, uint32_t i, char out[COST_NAME]) {
+    if (i > 0 && numbered(p))
+        (void)snprintf(out, COST_NAME, "%u", i);
+    else
+        (void)snprintf(out, COST_NAME, "%s", p->r->settings[i].name);
+}
+
+static void print_key(const plot *p, FILE *to) {
+    if (!numbered(p))
+        return;
+    (void)fputs("<ul class=\"key\">", to);
+    for (uint32_t k = 0; k < p->front_count; k++)
+        if (p->front[k] != 0) {
+            (void)fprintf(to, "<li data-setting=\"%u\"><b class=\"front\">%u</b> ", p->front[k], p->front[k]);
+            text_html(to, p->r->settings[p->front[k]].name);
+            (void)fputs("</li>", to);
+        }
+    (void)fputs("</ul>\n", to);
+}
+
 /* Names the default and the front's settings. False: out of memory. */
 static bool print_labels(const plot *p, FILE *to) {
     report_span *avoid = malloc((3 * (size_t)p->r->count + 2) * sizeof avoid[0]);
@@ -128,14 +162,19 @@ static bool print_labels(const plot *p, FILE *to) {
             if (p->front[k] != 0)
                 named[count++] = p->front[k];
         for (uint32_t k = 0; k < count; k++) {
-            const uint32_t length = text_length(p->r->settings[named[k]].name);
+            char name[COST_NAME];
+            name_point(p, named[k], name);
+            const uint32_t length = text_length(name);
             labels[k] = (report_label){.x = px(p, ms_of(p, named[k])), .y = py(p, error_of(p, named[k])), .height = 14};
             labels[k].width = 6.6 * (length < NAME_MOST ? length : NAME_MOST) + 2; /* 12 pixel sans-serif */
         }
         const report_span inside = {p->left + 2, 2, p->right, p->bottom - 2};
         report_place_labels(labels, count, avoid, obstacles(p, avoid), &inside);
-        for (uint32_t k = 0; k < count; k++)
-            print_label(p, &labels[k], p->r->settings[named[k]].name, named[k] == 0 ? DEFAULT : INK, to);
+        for (uint32_t k = 0; k < count; k++) {
+            char name[COST_NAME];
+            name_point(p, named[k], name);
+            print_label(p, &labels[k], name, named[k] == 0 ? DEFAULT : INK, to);
+        }
     }
     const bool done = avoid && labels && named;
     free(avoid);
@@ -210,6 +249,7 @@ vit_status report_plot_error(const cost_results *r, report_measure by, FILE *to,
             done = fclose(text) == 0 && done;
         }
         status = done ? draw(&p, script, to, why) : out_of_memory(why);
+        print_key(&p, to);
     }
     free(script);
     free(p.front);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 1000, LEFT = 220, RIGHT = 945, ROW = 19, HEAD = 8, FOOT = 44, NAME_MOST = 32 };
+enum { WIDTH = 1000, LEFT = 270, RIGHT = 945, ROW = 19, HEAD = 8, FOOT = 44, NAME_MOST = 40 };
 
 /* Passes of all settings by name, as a frame runs them; the largest have colours of their own. */
 typedef struct stack_pass {
@@ -105,7 +105,9 @@ static void print_rows(const cost_results *r, FILE *to) {
         const cost_setting *s = &r->settings[i];
         const int colour = i == 0 ? DEFAULT : s->front || s->front_relmse ? FRONT : SOFT;
         (void)fputs("set label ", to);
-        text_gnuplot(to, s->name, NAME_MOST);
+        char name[COST_NAME + 12];
+        (void)snprintf(name, sizeof name, "%u  %s", i, s->name);
+        text_gnuplot(to, name, NAME_MOST);
         (void)fprintf(to, " at 0,%u right offset -0.8,0 tc rgb '#0101%02x'\nset label '", i, colour);
         text_ms(to, s->ms);
         (void)fprintf(to, "' at screen %.6f, first %u right tc rgb '#0101%02x'\n", 1 - 8.0 / WIDTH, i, colour);

@@ -124,7 +124,8 @@ static void cell_ratio(FILE *to, double ratio) {
 
 /* Both fronts in one table, fastest first; the default is there in any case. */
 void report_table_front(const cost_results *r, FILE *to) {
-    static const column columns[] = {{"Setting", false},
+    static const column columns[] = {{"#", true},
+                                     {"Setting", false},
                                      {"On the front of", false},
                                      {"ms", true},
                                      {"p95 ms", true},
@@ -152,7 +153,8 @@ void report_table_front(const cost_results *r, FILE *to) {
             break;
         const cost_setting *s = &r->settings[next];
         const double nmse_ms = report_equal_ms(r, s, REPORT_NMSE), relmse_ms = report_equal_ms(r, s, REPORT_RELMSE);
-        (void)fprintf(to, "<tr data-setting=\"%" PRIu32 "\">", next);
+        (void)fprintf(to, "<tr data-setting=\"%" PRIu32 "\"><td class=\"n\" data-v=\"%" PRIu32 "\">%" PRIu32 "</td>", next,
+                      next, next);
         cell_name(to, s, next == 0);
         (void)fprintf(to, "<td>%s</td>", front_text(s)[0] ? front_text(s) : "neither");
         cell_ms(to, s->ms);
@@ -242,5 +244,6 @@ void report_table_errors(const cost_results *r, FILE *to) {
     print_errors("Default, all light, against the reference with the same limit", &d->total, to);
     print_errors("Default, all light, against the reference without a limit", &d->unlimited, to);
     print_errors("Default, indirect light alone, same limit", &d->indirect, to);
+    print_errors("Default, direct light alone: no estimate\xE2\x80\x99s fault", &r->direct, to);
     (void)fputs("</tbody></table></div>\n", to);
 }

@@ -106,8 +106,8 @@ uint32_t text_length(const char *text) {
     return length;
 }
 
-/* Single quotes: gnuplot replaces nothing between them; a quote is doubled. Backquotes would run a command elsewhere: never
- * passed on. */
+/* Single quotes, between which gnuplot replaces nothing; a quote is doubled. Backquotes and backslashes, which mean something
+ * elsewhere, go. */
 void text_gnuplot(FILE *to, const char *text, uint32_t most) {
     const bool cut = text_length(text) > most;
     (void)fputc('\'', to);
@@ -140,10 +140,14 @@ void text_format(FILE *to, const char *format, double value) {
 
 void text_3digits(FILE *to, double value) {
     const double size = fabs(value);
-    const int decimals = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : 2 - (int)floor(log10(size * 1.0005));
+    if (!(size >= 1e-5 && size < 1e7)) { /* not a number as well */
+        text_format(to, size > 0 ? "%.2e" : "%.0f", value);
+        return;
+    }
+    const int digits = (int)floor(log10(size * 1.0005)) + 1; /* before the point; what rounds up to 10 has two */
     char format[16];
-    (void)snprintf(format, sizeof format, "%%.%df", decimals);
-    text_format(to, size == 0 ? "%.0f" : size < 1e-5 || size >= 1e7 ? "%.2e" : format, value);
+    (void)snprintf(format, sizeof format, "%%.%df", digits < 3 ? 3 - digits : 0);
+    text_format(to, format, value);
 }
 
 void text_ms(FILE *to, double ms) {

@@ -24,9 +24,12 @@ static inline uint32_t sequence_permute(uint32_t v, uint32_t seed) {
     return v;
 }
 
-/* Point i of the set of `count` (a power of two) that `seed` names: each set is stratified, different seeds are independent. */
-static inline void sequence_point(uint32_t seed, uint32_t i, uint32_t count, float *u, float *v) {
-    const uint32_t shuffled = sequence_reverse(sequence_permute(sequence_reverse(i), seed)) & (count - 1);
+#define SEQUENCE_LENGTH (1u << 16)
+
+/* Point i < SEQUENCE_LENGTH of the sequence that `seed` names: its first 2^n points are stratified; different seeds' points are
+ * independent. */
+static inline void sequence_point(uint32_t seed, uint32_t i, float *u, float *v) {
+    const uint32_t shuffled = sequence_reverse(sequence_permute(sequence_reverse(i), seed)) & (SEQUENCE_LENGTH - 1);
     uint32_t second = 0; /* Sobol's second dimension; the first is the reversed index */
     for (uint32_t bits = shuffled, column = 0x80000000u; bits; bits >>= 1, column ^= column >> 1)
         if (bits & 1u)

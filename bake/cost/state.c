@@ -20,49 +20,72 @@ void state_free(reference_state *s) {
     *s = (reference_state){0};
 }
 
-void state_direct(reference_state *s, const path_sums *batch) {
-    for (uint32_t i = 0; i < s->pixels; i++)
-        memcpy(s->sums[i].direct, batch[i].limited, sizeof s->sums[i].direct);
+void state_add(reference_state *s, const pixel_sums *round) {
+    for (uint32_t i = 0; i < s->pixels; i++) {
+        memcpy(s->sums[i].direct, round[i].direct, sizeof s->sums[i].direct);
+        for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+            for (int k = 0; k < 3; k++) {
+                s->sums[i].paths[q].limited[k] += round[i].paths[q].limited[k];
+                s->sums[i].paths[q].unlimited[k] += round[i].paths[q].unlimited[k];
+            }
+    }
+    s->rounds++;
 }
 
-void state_add(reference_state *s, const path_sums *batch) {
-    for (uint32_t i = 0; i < s->pixels; i++)
-        for (int k = 0; k < 3; k++) {
-            const double limited = batch[i].limited[k], unlimited = batch[i].unlimited[k];
-            s->sums[i].limited[k] += limited;
-            s->sums[i].limited2[k] += limited * limited;
-            s->sums[i].unlimited[k] += unlimited;
-            s->sums[i].unlimited2[k] += unlimited * unlimited;
-        }
-    s->batches++;
+/* Mean of the sequences' means and its variance, from their sums over `paths` paths each. */
+typedef struct estimate {
+    double mean, variance;
+} estimate;
+
+static estimate estimate_of(const double sums[REFERENCE_SEQUENCES], double paths) {
+    const double n = REFERENCE_SEQUENCES;
+    double sum = 0, squares = 0;
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        sum += sums[q] / paths;
+    const double mean = sum / n;
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        squares += (sums[q] / paths - mean) * (sums[q] / paths - mean);
+    return (estimate){mean, squares / (n * (n - 1))};
 }
 
-/* Variance of the mean of n batch means: their sample variance over n. */
-static double variance(double sum, double squares, double n) {
-    const double v = (squares - sum * sum / n) / (n * (n - 1));
-    return v > 0 ? v : 0; /* rounding */
+static double paths_a_sequence(const reference_state *s) {
+    return (double)s->rounds * (REFERENCE_ROUND / REFERENCE_SEQUENCES);
+}
+
+static estimate limited_of(const reference_state *s, uint32_t pixel, int channel) {
+    double sums[REFERENCE_SEQUENCES];
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        sums[q] = s->sums[pixel].paths[q].limited[channel];
+    return estimate_of(sums, paths_a_sequence(s));
+}
+
+static estimate unlimited_of(const reference_state *s, uint32_t pixel, int channel) {
+    double sums[REFERENCE_SEQUENCES];
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        sums[q] = s->sums[pixel].paths[q].unlimited[channel];
+    return estimate_of(sums, paths_a_sequence(s));
 }
 
 double state_error(const reference_state *s) {
-    const double n = s->batches, values = 3.0 * s->pixels;
+    const double values = 3.0 * s->pixels;
     double total = 0, noise = 0;
-    if (s->batches < 2)
+    if (s->rounds == 0)
         return INFINITY;
     for (uint32_t i = 0; i < s->pixels; i++)
         for (int k = 0; k < 3; k++) {
-            total += s->sums[i].direct[k] + s->sums[i].limited[k] / n;
-            noise += variance(s->sums[i].limited[k], s->sums[i].limited2[k], n);
+            const estimate e = limited_of(s, i, k);
+            total += s->sums[i].direct[k] + e.mean;
+            noise += e.variance;
         }
     const double mean = total / values;
     return noise > 0 ? noise / values / (mean * mean) : 0;
 }
 
 vit_status state_finish(const reference_state *s, reference *out, vit_text *why) {
-    const double n = s->batches;
     double **const images[] = {&out->direct, &out->limited, &out->unlimited, &out->limited_variance, &out->unlimited_variance};
     *out = (reference){.width = s->width,
                        .height = s->height,
-                       .samples = s->batches * REFERENCE_BATCH,
+                       .samples = s->rounds * REFERENCE_ROUND,
                        .error = state_error(s),
                        .seconds = s->seconds,
                        .rays = s->rays};
@@ -72,14 +95,14 @@ vit_status state_finish(const reference_state *s, reference *out, vit_text *why)
             return no_memory(why);
         }
     for (uint32_t i = 0; i < s->pixels; i++)
-        for (uint32_t k = 0; k < 3; k++) {
-            const pixel_sums *p = s->sums + i;
-            const size_t at = 3 * (size_t)i + k;
-            out->direct[at] = p->direct[k];
-            out->limited[at] = p->limited[k] / n;
-            out->unlimited[at] = p->unlimited[k] / n;
-            out->limited_variance[at] = variance(p->limited[k], p->limited2[k], n);
-            out->unlimited_variance[at] = variance(p->unlimited[k], p->unlimited2[k], n);
+        for (int k = 0; k < 3; k++) {
+            const size_t at = 3 * (size_t)i + (size_t)k;
+            const estimate limited = limited_of(s, i, k), unlimited = unlimited_of(s, i, k);
+            out->direct[at] = s->sums[i].direct[k];
+            out->limited[at] = limited.mean;
+            out->limited_variance[at] = limited.variance;
+            out->unlimited[at] = unlimited.mean;
+            out->unlimited_variance[at] = unlimited.variance;
         }
     return VIT_OK;
 }

@@ -1,18 +1,18 @@
-/* state.c: an unfinished reference: sums a pixel over the batches so far. state_cache.c keeps it in a file. */
+/* state.c: an unfinished reference: sums a pixel over the rounds so far. state_cache.c keeps it in a file. */
 #ifndef VIT_COST_STATE_H
 #define VIT_COST_STATE_H
 
 #include "paths.h"
 
-/* Sums over batches of batch means and of their squares. */
+/* Sums over the paths of each sequence. */
 typedef struct pixel_sums {
     double direct[3]; /* not a sum */
-    double limited[3], limited2[3], unlimited[3], unlimited2[3];
+    path_sums paths[REFERENCE_SEQUENCES];
 } pixel_sums;
 
 typedef struct reference_state {
     uint64_t key; /* of the input */
-    uint32_t width, height, pixels, batches;
+    uint32_t width, height, pixels, rounds;
     double seconds;
     uint64_t rays;
     pixel_sums *sums;
@@ -20,11 +20,9 @@ typedef struct reference_state {
 
 vit_status state_make(uint32_t width, uint32_t height, reference_state *out, vit_text *why);
 void state_free(reference_state *s);
-/* Direct light is in the batch's `limited`. */
-void state_direct(reference_state *s, const path_sums *batch);
-/* One more batch's means, all pixels'. */
-void state_add(reference_state *s, const path_sums *batch);
-/* NMSE of the standard error of direct + limited; 0 for a black picture, infinite before the second batch. */
+/* One more round's sums, those of all pixels; direct light is that of any round. */
+void state_add(reference_state *s, const pixel_sums *round);
+/* NMSE of the standard error of direct + limited; 0 for a black picture, infinite before the first round. */
 double state_error(const reference_state *s);
 vit_status state_finish(const reference_state *s, reference *out, vit_text *why);
 

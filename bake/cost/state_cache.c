@@ -12,16 +12,16 @@
 
 typedef struct cache_header {
     char magic[8];
-    uint64_t key, rays, sums_hash;
+    uint64_t key, rays, hash;
     double seconds;
-    uint32_t width, height, batches, zero;
+    uint32_t width, height, rounds, zero;
 } cache_header;
 
 static const char magic[8] = "VITREF1";
 
 /* META's part that the picture depends on, and the settings. */
 typedef struct key_settings {
-    uint32_t method, batch, frame, every, bounces, width, height, direct_only[64];
+    uint32_t method, round, frame, every, bounces, width, height, direct_only[64];
     float ray_offset, box_pad, background[3];
 } key_settings;
 
@@ -30,7 +30,7 @@ static key_settings settings_of(const reference_input *in) {
     key_settings k;
     memset(&k, 0, sizeof k); /* padding, if any, is hashed too */
     k.method = METHOD;
-    k.batch = REFERENCE_BATCH;
+    k.round = REFERENCE_ROUND;
     k.frame = in->frame;
     k.every = in->every;
     k.bounces = in->bounces;
@@ -97,9 +97,16 @@ static bool file_name(const reference_state *s, const char *folder, char path[RO
     return length > 0 && length < ROOM;
 }
 
+/* Of the whole file. */
+static uint64_t hash_file(cache_header h, const pixel_sums *sums, size_t size) {
+    h.hash = 0;
+    const uint64_t parts[] = {vit_hash(&h, sizeof h), vit_hash(sums, size)};
+    return vit_hash(parts, sizeof parts);
+}
+
 static bool fits(const cache_header *h, const reference_state *s) {
     return memcmp(h->magic, magic, sizeof magic) == 0 && h->key == s->key && h->width == s->width && h->height == s->height &&
-           h->batches > 0 && h->batches <= UINT32_MAX / REFERENCE_BATCH;
+           h->rounds > 0 && h->rounds <= REFERENCE_MOST / REFERENCE_ROUND;
 }
 
 void state_load(reference_state *s, const char *folder) {
@@ -109,9 +116,9 @@ void state_load(reference_state *s, const char *folder) {
     const size_t size = s->pixels * sizeof *s->sums;
     pixel_sums *sums = malloc(size);
     if (f && sums && fread(&h, sizeof h, 1, f) == 1 && fits(&h, s) && fread(sums, 1, size, f) == size && fgetc(f) == EOF &&
-        vit_hash(sums, size) == h.sums_hash) {
+        hash_file(h, sums, size) == h.hash) {
         memcpy(s->sums, sums, size);
-        s->batches = h.batches;
+        s->rounds = h.rounds;
         s->rays = h.rays;
         s->seconds = h.seconds;
     }
@@ -122,17 +129,13 @@ void state_load(reference_state *s, const char *folder) {
 
 vit_status state_save(const reference_state *s, const char *folder, vit_text *why) {
     const size_t size = s->pixels * sizeof *s->sums;
-    cache_header h = {.key = s->key,
-                      .rays = s->rays,
-                      .sums_hash = vit_hash(s->sums, size),
-                      .seconds = s->seconds,
-                      .width = s->width,
-                      .height = s->height,
-                      .batches = s->batches};
+    cache_header h = {
+        .key = s->key, .rays = s->rays, .seconds = s->seconds, .width = s->width, .height = s->height, .rounds = s->rounds};
     char path[ROOM];
     unsigned char *file = malloc(sizeof h + size);
     vit_status status = VIT_FAILED;
     memcpy(h.magic, magic, sizeof magic);
+    h.hash = hash_file(h, s->sums, size);
     if (!file || !file_name(s, folder, path))
         snprintf(why->text, sizeof why->text, "reference: %s",
                  file ? "the cache's folder has too long a name" : "out of memory");

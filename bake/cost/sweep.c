@@ -1,6 +1,7 @@
 /* default pack -> reference -> settings -> pictures, work -> errors, a better reference if need be -> times -> front. */
 #include "sweep_parts.h"
 #include "front.h"
+#include "machine.h"
 #include "spread.h"
 #include <math.h>
 #include <stdio.h>
@@ -75,21 +76,21 @@ static void reference_step(void *user, double fraction, double seconds_left) {
 
 static vit_status make_reference(sweep *s, double target, vit_text *why) {
     reference *r = &s->out->reference;
-    const reference_input in = {.sections = &s->base.sections,
-                                .direct_only = s->direct_only,
-                                .frame = s->at,
-                                .every = s->grid.every,
-                                .bounces = s->base.plan.scene.bounces,
-                                .target = target,
-                                .max_samples = s->in->max_samples,
-                                .threads = s->in->pipeline->threads,
-                                .cache = s->in->cache,
-                                .cancel = s->in->cancel,
-                                .progress = reference_step,
-                                .user = s->progress};
+    s->truth = (reference_input){.sections = &s->base.sections,
+                                 .direct_only = s->direct_only,
+                                 .frame = s->at,
+                                 .every = s->grid.every,
+                                 .bounces = s->base.plan.scene.bounces,
+                                 .target = target,
+                                 .max_samples = s->in->max_samples,
+                                 .threads = s->in->pipeline->threads,
+                                 .cache = s->in->cache,
+                                 .cancel = s->in->cancel,
+                                 .progress = reference_step,
+                                 .user = s->progress};
     progress_stage(s->progress, "reference");
     reference_free(r);
-    vit_status status = reference_render(&in, r, why);
+    vit_status status = reference_render(&s->truth, r, why);
     progress_end(s->progress);
     if (status == VIT_OK)
         progress_line(s->progress, false, "reference: %u paths a pixel, NMSE of its own error %.2g", r->samples, r->error);
@@ -168,17 +169,9 @@ static void describe(sweep *s) {
     vit_text text;
     const char *device = vit_device_name(p->device, &text),
                *name = p->scene.name[0] ? p->scene.name : strrchr(p->scene.path, '/');
-    FILE *info = fopen("/proc/cpuinfo", "r");
-    char line[256];
     (void)snprintf(r->scene, sizeof r->scene, "%.*s", COST_NAME - 1, name ? name + (*name == '/') : p->scene.path);
     (void)snprintf(r->device, sizeof r->device, "%.*s", (int)sizeof r->device - 1, device ? device : "");
-    while (info && !r->cpu[0] && fgets(line, sizeof line, info)) {
-        const char *colon = strncmp(line, "model name", 10) == 0 ? strchr(line, ':') : NULL;
-        if (colon)
-            (void)snprintf(r->cpu, sizeof r->cpu, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
-    }
-    if (info)
-        (void)fclose(info);
+    machine_cpu(r->cpu, sizeof r->cpu);
     r->width = s->grid.width;
     r->height = s->grid.height;
     r->frame = s->frames[s->at];

@@ -22,6 +22,7 @@ typedef struct sweep {
     size_t points;        /* of the grid */
     pipeline_packed base; /* the default's: the reference reads it */
     bool *direct_only;    /* a light: photons = false */
+    reference_input truth;     /* what out->reference was made from */
     knob_setting *knobs;  /* one a setting, as out->settings */
     sweep_pack *packs;
     uint64_t kept;    /* bytes of packs */

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PATH_TRACED SWEEP_LEAST_REPEATS
+
 /* What a batch holds: the default first, then settings first .. end - 1. */
 typedef struct batch {
     uint32_t first, end;
@@ -85,7 +87,25 @@ static void step(void *user, double fraction) {
     progress_step(user, fraction);
 }
 
-static vit_status time_batch(sweep *s, batch *b, vit_text *why) {
+/* The reference's path tracer, one path a pixel, timed in turn with the settings. */
+typedef struct tracer {
+    reference_timer *timer;
+    double *ms;          /* PATH_TRACED values */
+    double nmse, relmse; /* sums over them */
+    uint32_t count;
+} tracer;
+
+static void trace_frame(void *other) {
+    tracer *t = other;
+    if (t->count == PATH_TRACED) /* they take long, and vary little */
+        return;
+    const reference_timing one = reference_timer_frame(t->timer);
+    t->ms[t->count++] = one.ms;
+    t->nmse += one.nmse;
+    t->relmse += one.relmse;
+}
+
+static vit_status time_batch(sweep *s, batch *b, tracer *traced, vit_text *why) {
     char label[64];
     vit_status status = batch_fill(s, b, why);
     if (status != VIT_OK)
@@ -98,6 +118,8 @@ static vit_status time_batch(sweep *s, batch *b, vit_text *why) {
                              .repeats = s->in->repeats,
                              .progress = step,
                              .user = s->progress,
+                             .between = trace_frame,
+                             .other = traced,
                              .cancel = s->in->cancel};
     status = timing_measure(&in, why);
     progress_end(s->progress);
@@ -113,17 +135,31 @@ static vit_status time_batch(sweep *s, batch *b, vit_text *why) {
     return VIT_OK;
 }
 
-vit_status sweep_times(sweep *s, vit_text *why) {
+static vit_status time_batches(sweep *s, tracer *traced, vit_text *why) {
     vit_status status = VIT_OK;
     for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < s->out->count);) {
         batch b = {.first = first, .end = batch_end(s, first)};
-        if (b.end < first)
-            b.end = first;
-        status = time_batch(s, &b, why);
+        status = time_batch(s, &b, traced, why);
         for (uint32_t i = b.first; i < b.end; i++)
             sweep_drop_pack(s, i);
         batch_free(&b);
         first = b.end > first ? b.end : first + 1;
+    }
+    return status;
+}
+
+vit_status sweep_times(sweep *s, vit_text *why) {
+    double ms[PATH_TRACED];
+    tracer traced = {.ms = ms};
+    vit_status status = reference_timer_open(&s->truth, &s->out->reference, &traced.timer, why);
+    if (status != VIT_OK)
+        return status;
+    status = time_batches(s, &traced, why);
+    reference_timer_close(traced.timer);
+    if (status == VIT_OK && traced.count > 0) {
+        s->out->path_tracer_ms = timing_median(ms, traced.count);
+        s->out->path_tracer_nmse = traced.nmse / traced.count;
+        s->out->path_tracer_relmse = traced.relmse / traced.count;
     }
     return status;
 }

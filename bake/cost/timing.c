@@ -80,7 +80,7 @@ static vit_status measure_round(const timing_input *in, opened *opens, uint32_t 
     for (uint32_t i = 0; i < in->count && status == VIT_OK; i++)
         status = cancelled(in, why) ? VIT_FAILED : measure_frame(&in->entries[i], &opens[i], round, why);
     if (status == VIT_OK && in->between)
-        in->between(in->user, round);
+        in->between(in->other);
     return status;
 }
 

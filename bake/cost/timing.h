@@ -23,8 +23,9 @@ typedef struct timing_input {
     uint32_t device;
     uint32_t repeats; /* rounds: in each, every entry plays one frame; the next round the next frame of the pack */
     void (*progress)(void *user, double fraction);
-    void (*between)(void *user, uint32_t round); /* called once a round, in turn with the entries; may be NULL */
     void *user;
+    void (*between)(void *other); /* called once a round, in turn with the entries; may be NULL */
+    void *other;
     const volatile sig_atomic_t *cancel;
 } timing_input;
 

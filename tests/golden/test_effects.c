@@ -157,6 +157,27 @@ static void a_flattened_kernel_takes_no_buffer_and_no_pass(void **state) {
     only_adds("flattened", "list", " ", " ");
 }
 
+static void light_at_fewer_samples_takes_the_place_of_the_estimate(void **state) {
+    (void)state;
+    const vit_requirements four = requirements("sparse"), sixteen = requirements("sparse-room"), all = requirements("room");
+    adds("sparse", "list", " coarse flags ", " estimate_sparse interpolate estimate_rest ");
+    adds("list", "sparse", " ", " estimate_list ");
+    adds("sparse-buckets", "room-buckets", " coarse flags ", " estimate_sparse interpolate estimate_rest ");
+    adds("room-buckets", "sparse-buckets", " ", " estimate_buckets ");
+    assert_int_equal(bytes_of(&four, "coarse"), bytes_of(&four, "indirect") / 12 / 4 * 36);
+    assert_int_equal(bytes_of(&sixteen, "coarse"), bytes_of(&sixteen, "indirect") / 12 / 16 * 36);
+    assert_int_equal(bytes_of(&sixteen, "flags"), bytes_of(&all, "keys") / 16);
+}
+
+static void a_texture_filter_takes_no_buffer_and_no_pass(void **state) {
+    (void)state;
+    only_adds("nearest", "room", " ", " ");
+    only_adds("trilinear", "room", " ", " ");
+    assert_int_equal(requirements("room").effects & (VIT_EFFECT_BIT_NEAREST | VIT_EFFECT_BIT_TRILINEAR), 0);
+    assert_true(requirements("nearest").effects & VIT_EFFECT_BIT_NEAREST);
+    assert_true(requirements("trilinear").effects & VIT_EFFECT_BIT_TRILINEAR);
+}
+
 static void still_lights_have_no_pass_that_traces_photons(void **state) {
     (void)state;
     only_adds("room", "still", " ", " photon_paths ");
@@ -225,7 +246,8 @@ static void open_and_play_one(const char *name, vit_view view) {
 
 static void what_is_made_and_compiled_is_what_was_required_and_no_more(void **state) {
     (void)state;
-    static const char *const packs[] = {"list", "buckets", "raw", "dark", "room", "still", "lamp"};
+    static const char *const packs[] = {"list",  "buckets", "raw",    "dark",        "room",
+                                        "still", "lamp",    "sparse", "sparse-room", "sparse-buckets"};
     for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
         open_and_play_one(packs[i], VIT_VIEW_final);
 }
@@ -243,6 +265,8 @@ int main(void) {
         cmocka_unit_test(a_list_has_no_buckets_and_buckets_have_no_list_estimate),
         cmocka_unit_test(raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone),
         cmocka_unit_test(a_flattened_kernel_takes_no_buffer_and_no_pass),
+        cmocka_unit_test(light_at_fewer_samples_takes_the_place_of_the_estimate),
+        cmocka_unit_test(a_texture_filter_takes_no_buffer_and_no_pass),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),

@@ -123,6 +123,28 @@ static void the_script_names_dots_makes_rows_and_fills_choosers(void **state) {
     free(page);
 }
 
+/* A dot's place along the axis must be its own setting's time, not another's. */
+static void each_dot_has_its_own_settings_name(void **state) {
+    bench *b = *state;
+    needs_browser(b);
+    char *page = browse(b, "--dump-dom");
+    const char *at = strstr(page, "<svg id=\"plot-nmse\""), *end = at ? strstr(at, "</svg>") : NULL;
+    assert_non_null(end);
+    double x[LAB_SETTINGS] = {0};
+    while ((at = strstr(at, "<use ")) && at < end) {
+        const char *place = strstr(at, "translate("), *point = strstr(at, "data-point=\""), *close = strchr(at, '>');
+        if (place && point && point < close && place < close)
+            x[atoi(point + strlen("data-point=\""))] = strtod(place + strlen("translate("), NULL);
+        at = close;
+    }
+    for (uint32_t i = 0; i < LAB_SETTINGS; i++)
+        for (uint32_t k = 0; k < LAB_SETTINGS; k++)
+            if (b->results.settings[i].ms < 0.99 * b->results.settings[k].ms && !(x[i] < x[k]))
+                fail_msg("settings %u and %u: %g and %g ms, at %g and %g", i, k, b->results.settings[i].ms,
+                         b->results.settings[k].ms, x[i], x[k]);
+    free(page);
+}
+
 static void the_table_of_settings_is_sorted_by_time(void **state) {
     bench *b = *state;
     needs_browser(b);
@@ -175,6 +197,7 @@ static void the_plots_have_the_style_sheets_colours_in_the_light_and_in_the_dark
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_script_names_dots_makes_rows_and_fills_choosers),
+        cmocka_unit_test(each_dot_has_its_own_settings_name),
         cmocka_unit_test(the_table_of_settings_is_sorted_by_time),
         cmocka_unit_test(the_plots_have_the_style_sheets_colours_in_the_light_and_in_the_dark),
     };

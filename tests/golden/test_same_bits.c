@@ -116,6 +116,11 @@ ALIKE(buckets_hash_the_same, "buckets", together)
 ALIKE(raw_buckets_hash_the_same, "raw", few)
 ALIKE(flattened_photons_hash_the_same, "flattened", few)
 ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys", few)
+ALIKE(interpolated_light_hashes_the_same, "sparse", together)
+ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets", together)
+ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", together)
+ALIKE(nearest_texels_hash_the_same, "nearest", few)
+ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
 ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -150,12 +155,14 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("buckets"), "--trace", together, COUNT(together));
     assert_all_alike(test_pack("normal-keys"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("room"), "--trace", together, COUNT(together));
+    assert_all_alike(test_pack("sparse-room"), "--trace", together, COUNT(together));
+    assert_all_alike(test_pack("sparse-buckets"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
 }
 
 static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
     (void)state;
-    static const char *const packs[] = {"list", "1x1", "17x1", "33x47"};
+    static const char *const packs[] = {"list", "1x1", "17x1", "33x47", "sparse-17x1"};
     static const char *const formats[] = {"--verify --hash", "--verify --hash --format rgb565",
                                           "--verify --hash --format rgba32f"};
     static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16"}};
@@ -182,6 +189,11 @@ int main(void) {
         cmocka_unit_test(raw_buckets_hash_the_same),
         cmocka_unit_test(flattened_photons_hash_the_same),
         cmocka_unit_test(keys_with_normals_and_small_tiles_hash_the_same),
+        cmocka_unit_test(interpolated_light_hashes_the_same),
+        cmocka_unit_test(interpolated_buckets_hash_the_same),
+        cmocka_unit_test(one_sample_in_16_and_small_tiles_hash_the_same),
+        cmocka_unit_test(nearest_texels_hash_the_same),
+        cmocka_unit_test(trilinear_textures_hash_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),

@@ -77,6 +77,8 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses("scene.cfg --estimate guess" OUT, VIT_USAGE, "list or buckets");
     bake_refuses("scene.cfg --threads many" OUT, VIT_USAGE, "--threads");
     bake_refuses(TEST_SCENES "/furnace.cfg --tile 24" OUT, VIT_USAGE, "--tile");
+    bake_refuses(TEST_SCENES "/furnace.cfg --indirect-samples 2" OUT, VIT_USAGE, "--indirect-samples");
+    bake_refuses(TEST_SCENES "/furnace.cfg --texture-filter cubic" OUT, VIT_USAGE, "--texture-filter");
 }
 
 static void the_baker_names_a_file_that_is_missing(void **state) {

@@ -22,7 +22,8 @@ static uint64_t total(const vit_statistics *s, uint32_t kind) {
     return sum;
 }
 
-static const char *const packs[] = {"list", "buckets", "room", "room-buckets", "raw", "normal-keys", "33x47", "still", "dark"};
+static const char *const packs[] = {"list",  "buckets", "room", "room-buckets", "raw",           "normal-keys",
+                                    "33x47", "still",   "dark", "sparse",       "sparse-buckets"};
 enum { PACKS = sizeof packs / sizeof packs[0] };
 
 /* Every pass and kind; those that depend on the lanes only if asked. */
@@ -226,6 +227,31 @@ static void evaluations_of_a_list_are_the_lists_of_the_samples(void **state) {
     }
 }
 
+/* At one sample in 4 or 16: the coarse grid's lists, and those of the samples that are flagged. */
+static void evaluations_of_a_sparse_list_are_those_of_coarse_and_flagged_samples(void **state) {
+    (void)state;
+    static const struct {
+        const char *pack;
+        uint32_t step;
+    } lists[] = {{"sparse", 2}, {"sparse-16", 4}, {"sparse-room", 4}};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        counted *c = count_and_read(lists[i].pack, (vit_open_info){0});
+        uint32_t *flags = read_buffer(&c->p, B_flags);
+        uint64_t coarse = 0, flagged = 0;
+        for (uint32_t k = 0; k < c->scene->samples; k++) {
+            const uint64_t photons = c->keys[k] == VIT_NONE ? 0 : c->list[cluster_of(c, c->keys[k])];
+            coarse += k % 4 % lists[i].step == 0 && k / 4 % 4 % lists[i].step == 0 ? photons : 0;
+            flagged += flags[k / 16] >> k % 16 & 1u ? photons : 0;
+        }
+        assert_true(coarse > 0 && flagged > 0);
+        assert_int_equal(WORK(&c->s, estimate_sparse, evaluations), coarse);
+        assert_int_equal(WORK(&c->s, estimate_rest, evaluations), flagged);
+        assert_int_equal(total(&c->s, VIT_WORK_evaluations), coarse + flagged);
+        free(flags);
+        drop(c);
+    }
+}
+
 /* With a bound that is too small for all clusters and photons, only what was kept is evaluated. */
 static void what_was_dropped_is_not_evaluated(void **state) {
     (void)state;
@@ -369,6 +395,7 @@ int main(void) {
         cmocka_unit_test(photon_rays_are_between_what_hit_and_what_could),
         cmocka_unit_test(shadow_rays_go_where_light_could_come_from),
         cmocka_unit_test(evaluations_of_a_list_are_the_lists_of_the_samples),
+        cmocka_unit_test(evaluations_of_a_sparse_list_are_those_of_coarse_and_flagged_samples),
         cmocka_unit_test(what_was_dropped_is_not_evaluated),
         cmocka_unit_test(evaluations_of_raw_buckets_are_those_that_hold_light),
         cmocka_unit_test(evaluations_of_smoothed_buckets_are_whole_clusters),

@@ -9,7 +9,17 @@
 #include <string.h>
 #include <cmocka.h>
 
-static const scene_quality base = {.photons = 10000, .bounces = 4, .radius = 0.8, .tile = 32};
+static scene_quality base; /* defaults of a scene file, but for what begin() states */
+
+static int begin(void **state) {
+    scene s;
+    vit_text why = {""};
+    (void)state;
+    assert_int_equal(scene_for_mesh("none.obj", &s, &why), VIT_OK);
+    base = s.quality;
+    scene_free(&s);
+    return scene_quality_apply("photons = 10000; bounces = 4; radius = 0.8; tile = 32", &base, &why);
+}
 
 typedef struct list {
     knob_setting *s;
@@ -178,5 +188,5 @@ int main(void) {
         cmocka_unit_test(what_a_setting_says_reads_back),
         cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, begin, NULL);
 }

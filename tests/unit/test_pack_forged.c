@@ -88,6 +88,8 @@
     X(META, neither_list_nor_buckets, "without LIST or BUCKETS", EFFECTS(0, BIT(LIST)))                                        \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
+    X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \
+    X(META, two_texture_filters, "NEAREST and TRILINEAR", EFFECTS(BIT(NEAREST) | BIT(TRILINEAR), 0))                           \
     X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
     X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \

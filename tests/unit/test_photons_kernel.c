@@ -32,7 +32,7 @@ static vit_photon *kernel_photons(const room *r, uint32_t paths) {
     }
     lab l = lab_open(1,
                      VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_SPOT | VIT_EFFECT_BIT_RANGE | VIT_EFFECT_BIT_TEXTURES |
-                         VIT_EFFECT_BIT_CUTOUT | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED,
+                         VIT_EFFECT_BIT_CUTOUT | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | r->in.effects,
                      frame_zero);
     const cl_mem arguments[] = {lab_buffer(&l, &s, sizeof s),
                                 lab_buffer(&l, r->g.triangles, r->m.triangles * sizeof *r->g.triangles),
@@ -83,9 +83,9 @@ static room *furnished_room(void) {
     return r;
 }
 
-static void still_lights_have_the_photons_that_the_kernel_gives_moving_ones(void **state) {
-    (void)state;
+static void compare(uint32_t filter) {
     room *r = furnished_room();
+    r->in.effects = filter;
     const uint32_t paths = r->lights[0].paths, stored = r->in.bounces - 1;
     uint32_t count, alike = 0, same = 0;
     vit_photon *baked = room_bake(r, 2, &count), *traced = kernel_photons(r, 2 * paths);
@@ -106,14 +106,27 @@ static void still_lights_have_the_photons_that_the_kernel_gives_moving_ones(void
     print_message("%u of %u slots alike, %u to the bit; power %.6f of the kernel's\n", alike, count, same, watts / expected);
     assert_true(alike >= 0.99 * count);
     assert_true(fabs(watts / expected - 1.0) < 1e-3);
+    assert_true(same >= 0.9 * count);
     free(traced);
     free(baked);
     room_drop(r);
 }
 
+static void still_lights_have_the_photons_that_the_kernel_gives_moving_ones(void **state) {
+    (void)state;
+    compare(0);
+}
+
+static void so_they_do_with_other_texture_filters(void **state) {
+    (void)state;
+    compare(VIT_EFFECT_BIT_NEAREST);
+    compare(VIT_EFFECT_BIT_TRILINEAR);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(still_lights_have_the_photons_that_the_kernel_gives_moving_ones),
+        cmocka_unit_test(so_they_do_with_other_texture_filters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,9 +9,8 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "cost/report_parts.h"
+#include "json_check.h"
 #include "report_lab.h"
-#include <png.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -129,86 +128,6 @@ static void the_csv_reads_back_to_the_same_numbers(void **state) {
 }
 
 /* ---- JSON ---- */
-
-static const char *json_space(const char *t) {
-    return t + strspn(t, " \n\r\t");
-}
-
-static const char *json_text(const char *t) {
-    if (*t++ != '"')
-        return NULL;
-    for (; *t != '"'; t++) {
-        if ((unsigned char)*t < 0x20)
-            return NULL;
-        if (*t != '\\')
-            continue;
-        t++;
-        if (*t == 'u' && strspn(t + 1, "0123456789abcdefABCDEF") >= 4)
-            t += 4;
-        else if (!*t || !strchr("\"\\/bfnrt", *t))
-            return NULL;
-    }
-    return t + 1;
-}
-
-static const char *json_number(const char *t) {
-    t += *t == '-';
-    const size_t whole = strspn(t, "0123456789");
-    if (whole == 0 || (whole > 1 && *t == '0'))
-        return NULL;
-    t += whole;
-    if (*t == '.') {
-        const size_t digits = strspn(++t, "0123456789");
-        if (digits == 0)
-            return NULL;
-        t += digits;
-    }
-    if (*t == 'e' || *t == 'E') {
-        t++;
-        t += *t == '-' || *t == '+';
-        const size_t digits = strspn(t, "0123456789");
-        if (digits == 0)
-            return NULL;
-        t += digits;
-    }
-    return t;
-}
-
-/* Past one value as RFC 8259 has it; NULL: it is none. */
-static const char *json_value(const char *t) {
-    t = json_space(t);
-    const char *words[] = {"null", "true", "false"};
-    for (int i = 0; i < 3; i++)
-        if (strncmp(t, words[i], strlen(words[i])) == 0)
-            return t + strlen(words[i]);
-    if (*t == '"')
-        return json_text(t);
-    if (*t != '{' && *t != '[')
-        return json_number(t);
-    const char end = *t == '{' ? '}' : ']';
-    t = json_space(t + 1);
-    if (*t == end)
-        return t + 1;
-    for (;;) {
-        if (end == '}') {
-            t = json_text(json_space(t));
-            t = t ? json_space(t) : NULL;
-            if (!t || *t++ != ':')
-                return NULL;
-        }
-        t = json_value(t);
-        t = t ? json_space(t) : NULL;
-        if (!t || (*t != ',' && *t != end))
-            return NULL;
-        if (*t++ == end)
-            return t;
-    }
-}
-
-static bool json_valid(const char *text) {
-    const char *end = json_value(text);
-    return end && *json_space(end) == '\0';
-}
 
 static void the_json_is_strict_and_holds_passes_and_work(void **state) {
     bench *b = *state;
@@ -354,133 +273,6 @@ static void without_gnuplot_the_numbers_are_written_and_the_line_says_what_is_mi
     free(json);
 }
 
-/* ---- what is derived ---- */
-
-static void prices_say_what_a_knob_buys_and_order_by_it(void **state) {
-    const bench *b = *state;
-    report_price prices[LAB_SETTINGS];
-    const uint32_t count = report_prices(&b->results, REPORT_NMSE, prices);
-    assert_int_equal(count, LAB_SETTINGS - 3); /* without the default and two combinations */
-    uint32_t of_lanes = 0, of_photons = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        if (i > 0)
-            assert_true(prices[i].kind >= prices[i - 1].kind);
-        if (i > 0 && prices[i].kind == REPORT_BUYS && prices[i - 1].kind == REPORT_BUYS)
-            assert_true(prices[i].rate <= prices[i - 1].rate);
-        if (prices[i].setting == 15)
-            of_lanes = i;
-        if (prices[i].setting == 2)
-            of_photons = i;
-    }
-    assert_int_equal(prices[of_lanes].kind, REPORT_SAME);
-    assert_int_equal(prices[of_photons].kind, REPORT_BUYS);
-    assert_true(fabs(prices[of_photons].rate - (0.061 - 0.038) / (41.5 - 22.1)) < 1e-12);
-}
-
-static void a_time_within_the_noise_is_no_gain_in_speed(void **state) {
-    bench *b = *state;
-    report_price prices[LAB_SETTINGS];
-    cost_setting *d = &b->results.settings[0], *s = &b->results.settings[1];
-    b->results.count = 2;
-    s->ms = d->ms - 0.1;
-    s->ms_mad = d->ms_mad = 0.05;
-    assert_int_equal(report_prices(&b->results, REPORT_NMSE, prices), 1);
-    assert_int_equal(prices[0].kind, REPORT_LOSES);
-    s->ms = d->ms - 0.3;
-    assert_int_equal(report_prices(&b->results, REPORT_NMSE, prices), 1);
-    assert_int_equal(prices[0].kind, REPORT_SAVES);
-    b->results.count = LAB_SETTINGS;
-}
-
-static void labels_hide_no_point_and_not_each_other(void **state) {
-    (void)state;
-    report_label labels[12];
-    report_span avoid[12];
-    const report_span inside = {0, 0, 800, 500};
-    for (int i = 0; i < 12; i++) { /* a front whose points stand closer than a label is wide or high */
-        labels[i] = (report_label){.x = 300 + 14 * i, .y = 200 + 11 * i, .width = 90, .height = 14};
-        avoid[i] = (report_span){labels[i].x - 5, labels[i].y - 5, labels[i].x + 5, labels[i].y + 5};
-    }
-    report_place_labels(labels, 12, avoid, 12, &inside);
-    for (int i = 0; i < 12; i++) {
-        const report_label *l = &labels[i];
-        assert_true(l->left >= 0 && l->top >= 0 && l->left + l->width <= 800 && l->top + l->height <= 500);
-        for (int k = 0; k < 12; k++) {
-            assert_false(l->left < avoid[k].x1 && avoid[k].x0 < l->left + l->width && l->top < avoid[k].y1 &&
-                         avoid[k].y0 < l->top + l->height);
-            const report_label *o = &labels[k];
-            if (k != i)
-                assert_false(l->left < o->left + o->width && o->left < l->left + l->width && l->top < o->top + o->height &&
-                             o->top < l->top + l->height);
-        }
-    }
-}
-
-/* ---- pictures ---- */
-
-typedef bool uri_fn(const cost_setting *s, const cost_results *r, const report_pictures *p, FILE *to);
-
-/* Decodes a picture of the report's; the caller frees it. RGB, 3 bytes a pixel. */
-static uint8_t *decode(const bench *b, const report_pictures *p, uri_fn *uri) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char *text = NULL;
-    size_t length = 0, size = 0;
-    FILE *to = open_memstream(&text, &length);
-    assert_true(uri(&b->results.settings[0], &b->results, p, to));
-    assert_int_equal(fclose(to), 0);
-    const char *start = "data:image/png;base64,";
-    assert_memory_equal(text, start, strlen(start));
-    uint8_t *file = malloc(length);
-    uint32_t word = 0;
-    for (const char *c = text + strlen(start); *c && *c != '='; c++) {
-        const char *digit = strchr(digits, *c);
-        assert_non_null(digit);
-        word = word << 6 | (uint32_t)(digit - digits);
-        const size_t i = (size_t)(c - text) - strlen(start);
-        if (i % 4 != 0)
-            file[size++] = (uint8_t)(word >> (6 - 2 * (i % 4)));
-    }
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    assert_true(png_image_begin_read_from_memory(&image, file, size));
-    image.format = PNG_FORMAT_RGB;
-    assert_int_equal(image.width, p->width);
-    assert_int_equal(image.height, p->height);
-    uint8_t *rgb = malloc(PNG_IMAGE_SIZE(image));
-    assert_true(png_image_finish_read(&image, NULL, rgb, 0, NULL));
-    free(file);
-    free(text);
-    return rgb;
-}
-
-static void pictures_show_the_frame_and_the_sign_and_size_of_its_error(void **state) {
-    bench *b = *state;
-    const size_t values = (size_t)b->results.reference.width * b->results.reference.height * 3;
-    for (size_t i = 0; i < values; i++) {
-        b->results.reference.direct[i] = 0.2;
-        b->results.reference.limited[i] = 0.3;
-        b->results.settings[0].image[i] = i < 3 ? 1.5f : i < 6 ? 0.0f : 0.5f; /* too bright, too dark, right */
-    }
-    report_pictures p;
-    assert_true(report_pictures_choose(&b->results, &p));
-    assert_int_equal(p.settings[0], 0);
-    uint8_t *frame = decode(b, &p, report_frame_uri), *with_sign = decode(b, &p, report_signed_uri),
-            *squared = decode(b, &p, report_squared_uri);
-    const uint8_t frames[] = {255, 255, 255, 0, 0, 0, 188, 188, 188}; /* sRGB of 0.5: 188 */
-    assert_memory_equal(frame, frames, 9);
-    const report_map signs = report_map_signed(), sizes = report_map_squared();
-    assert_memory_equal(with_sign, signs.rgb[REPORT_COLOURS - 1], 3);
-    assert_true(with_sign[3] < 60 && with_sign[5] > 90); /* blue */
-    assert_memory_equal(with_sign + 6, signs.rgb[REPORT_COLOURS / 2], 3);
-    const int mark =
-        (int)lround((log10(1 / (0.5 * 0.5)) + 4) / 5 * (REPORT_COLOURS - 1)); /* about: the mean is 0.5 within 0.1 % */
-    assert_true(abs(squared[0] - sizes.rgb[mark][0]) < 12);
-    assert_memory_equal(squared + 6, sizes.rgb[0], 3);
-    free(frame);
-    free(with_sign);
-    free(squared);
-    report_pictures_free(&p);
-}
-
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void) {
@@ -493,10 +285,6 @@ int main(void) {
         TEST(results_with_nothing_in_them_make_a_report),
         TEST(a_folder_that_cannot_be_made_gives_one_line),
         TEST(without_gnuplot_the_numbers_are_written_and_the_line_says_what_is_missing),
-        TEST(prices_say_what_a_knob_buys_and_order_by_it),
-        TEST(a_time_within_the_noise_is_no_gain_in_speed),
-        TEST(labels_hide_no_point_and_not_each_other),
-        TEST(pictures_show_the_frame_and_the_sign_and_size_of_its_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,7 +83,8 @@ static const char full[] =
     "materials = ( { name = \"floor\"; color = (0.5, 0.25, 1); texture = \"x.png\"; emission = (1, 2, 3); cutoff = 0.75; },\n"
     "  { name = \"wall\"; texture = \"\"; } );\n"
     "quality: { photons = 1000; bounces = 7; radius = 0.5; tile = 16; estimate = \"buckets\"; smoothing = \"raw\";\n"
-    "  kernel = \"flattened\"; flatten = 9.0; normal_keys = true; };\n";
+    "  kernel = \"flattened\"; flatten = 9.0; normal_keys = true; indirect_samples = 4;\n"
+    "  texture_filter = \"trilinear\"; };\n";
 
 static void every_setting_of_output_and_quality_is_read(void **state) {
     scene s;
@@ -95,6 +96,7 @@ static void every_setting_of_output_and_quality_is_read(void **state) {
     near3(s.background, 0.1, 0.2, 0.3);
     assert_true(s.quality.photons == 1000 && s.quality.bounces == 7 && s.quality.radius == 0.5 && s.quality.tile == 16);
     assert_true(s.quality.buckets && s.quality.raw && s.quality.flatten == 9.0 && s.quality.normal_keys);
+    assert_true(s.quality.indirect_samples == 4 && s.quality.texture_filter == FILTER_TRILINEAR);
     assert_false(s.automatic);
     scene_free(&s);
 }
@@ -183,6 +185,7 @@ static void what_is_left_out_has_its_default(void **state) {
     assert_true(s.lights[0].inner == 0.0 && s.lights[0].outer == 45.0 && s.lights[0].photons && !s.lights[0].window);
     assert_true(s.quality.photons == 17000 && s.quality.bounces == 4 && s.quality.radius == 0.0 && s.quality.tile == 32);
     assert_true(!s.quality.buckets && !s.quality.raw && s.quality.flatten == 0.0 && !s.quality.normal_keys);
+    assert_true(s.quality.indirect_samples == 1 && s.quality.texture_filter == FILTER_BILINEAR);
     scene_free(&s);
 }
 
@@ -304,6 +307,13 @@ REFUSES(a_reflectance_above_1_is_refused, 3, "'color' must have its numbers in [
 REFUSES(a_million_and_one_photons_are_refused, 3, "quality: 'photons'", GOOD "quality: { photons = 1000001; };\n")
 REFUSES(zero_bounces_are_refused, 3, "quality: 'bounces' must be in [1, 32], got 0", GOOD "quality: { bounces = 0; };\n")
 REFUSES(a_tile_of_24_pixels_is_refused, 3, "'tile' must be 8, 16, 32 or 64, got 24", GOOD "quality: { tile = 24; };\n")
+REFUSES(one_sample_in_2_is_refused, 3, "'indirect_samples' must be 1, 4 or 16, got 2",
+        GOOD "quality: { indirect_samples = 2; };\n")
+REFUSES(an_unknown_filter_is_refused, 3, "'texture_filter' must be \"nearest\", \"bilinear\" or \"trilinear\", got cubic",
+        GOOD "quality: { texture_filter = \"cubic\"; };\n")
+REFUSES(a_filter_that_is_a_number_is_refused, 3, "'texture_filter' must be \"nearest\"",
+        GOOD "quality: { texture_filter = 2; };\n")
+REFUSES(one_sample_in_none_is_refused, 3, "'indirect_samples'", GOOD "quality: { indirect_samples = 0; };\n")
 REFUSES(a_radius_that_is_a_word_is_refused, 3, "or \"auto\"", GOOD "quality: { radius = \"big\"; };\n")
 REFUSES(raw_lists_are_refused, 3, "needs estimate \"buckets\"", GOOD "quality: { smoothing = \"raw\"; };\n")
 REFUSES(a_flattening_of_a_sphere_is_refused, 3, "needs kernel", GOOD "quality: { flatten = 3; };\n")
@@ -467,6 +477,10 @@ int main(void) {
         T(a_million_and_one_photons_are_refused),
         T(zero_bounces_are_refused),
         T(a_tile_of_24_pixels_is_refused),
+        T(one_sample_in_2_is_refused),
+        T(one_sample_in_none_is_refused),
+        T(an_unknown_filter_is_refused),
+        T(a_filter_that_is_a_number_is_refused),
         T(a_radius_that_is_a_word_is_refused),
         T(raw_lists_are_refused),
         T(a_flattening_of_a_sphere_is_refused),

@@ -1,0 +1,204 @@
+/* Pass 8 at fewer samples: irradiance is estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other
+ * samples get it from the four coarse ones around them, weighted bilinearly and by whether they lie on the same surface: Kopf et
+ * al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees with is estimated after all. Albedo is
+ * applied later, so that textures stay sharp. */
+#if VIT_EFFECT_SPARSE
+
+#if VIT_EFFECT_SPARSE_16
+#define SPARSE_STEP 4 /* pixels between coarse samples */
+#else
+#define SPARSE_STEP 2
+#endif
+#define SPARSE_ROW (4 / SPARSE_STEP) /* coarse samples a row of a block of 4 x 4 pixels */
+#define SPARSE_BLOCK (SPARSE_ROW * SPARSE_ROW)
+#define SPARSE_LEAST 0.1f /* sum of weights below which a sample has no neighbours; 1: four of the same plane and normal */
+
+/* A coarse sample: irradiance, position, unit normal, 3 floats each; irradiance -1: it has no key. A block's are side by side,
+ * the one of the least pixel first. */
+#define SPARSE_FLOATS 9
+
+static inline uint sparse_count(global const vit_scene *scene)
+{
+    return scene->samples / (16u / SPARSE_BLOCK);
+}
+
+/* View sample of coarse sample i. */
+static inline li sparse_sample(li i)
+{
+    li at = i & (SPARSE_BLOCK - 1);
+    return (i / SPARSE_BLOCK) * 16 + (at / SPARSE_ROW) * (SPARSE_STEP * 4) + (at % SPARSE_ROW) * SPARSE_STEP;
+}
+
+/* List or buckets, whichever there are; `slots` are coarse samples where `flags` is NULL, else the view samples flagged there. */
+#define SPARSE_PARAMETERS                                                                                                        \
+    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
+        global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,        \
+        global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,        \
+        global const float *position, global const uint *normal, ESTIMATE_BAKED
+#define SPARSE_ARGUMENTS                                                                                                         \
+    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal, accept, inverse_area
+
+/* Estimates the first `used` of the lanes' slots, which have this key, and stores them. */
+static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, global float *out, const int *slots, uint used, int key WORK_PASSED)
+{
+    uint n = scene->samples;
+    li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
+    estimate_sample found = estimate_load_at(n, sample, position, normal, accept, inverse_area);
+    lv3 p = found.p, s = found.s;
+    li keyed = l_sel_i(L_LT(L_INDEX, (li)(int)used), (li)key, (li)-1);
+#if VIT_EFFECT_LIST
+    lv3 e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
+#else
+    li x, y;
+    l_pixel_of(scene, sample, &x, &y);
+    lv3 e = bucket_gather(BUCKET_ARGUMENTS, keyed, &found, x, y WORK_PASS);
+#endif
+    float value[SPARSE_FLOATS][VIT_LANES];
+    L_STORE(e.x, value[0]);
+    L_STORE(e.y, value[1]);
+    L_STORE(e.z, value[2]);
+    L_STORE(p.x, value[3]);
+    L_STORE(p.y, value[4]);
+    L_STORE(p.z, value[5]);
+    L_STORE(s.x, value[6]);
+    L_STORE(s.y, value[7]);
+    L_STORE(s.z, value[8]);
+    for (uint i = 0; i < used; i++)
+        if (flags)
+            for (uint k = 0; k < 3; k++)
+                VIT_PLANE(out, k, n)[slots[i]] = value[k][i];
+        else
+            for (uint k = 0; k < SPARSE_FLOATS; k++)
+                out[(size_t)slots[i] * SPARSE_FLOATS + k] = value[k][i];
+}
+
+/* Keys of the slots from `first` on; negative beyond `end` and where nothing is to be estimated. */
+static inline li sparse_keys(global const uint *keys, global const uint *flags, uint first, uint end)
+{
+    li slot = (int)first + L_INDEX;
+    if (flags) { /* end is a multiple of 16 */
+        li flagged = ((li)(int)(flags[first / 16] >> (first & 15)) >> L_INDEX) & 1;
+        return l_any(flagged) ? L_AS_INT(L_LOAD(keys + first)) | (flagged - 1) : (li)-1;
+    }
+    li key = L_AS_INT(l_gather_u(keys, sparse_sample(min(slot, (li)(int)(end - 1)))));
+    return l_sel_i(L_LT(slot, (li)(int)end), key, (li)-1);
+}
+
+/* All slots of a tile, those of one cluster together: lanes that share a list take it in one go. Which lanes go together changes
+ * no bit. */
+static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, global float *out, uint tile, uint slots WORK_PASSED)
+{
+    uint begin = tile * slots, end = begin + slots;
+    for (int key = 0x7fffffff, next; key >= 0; key = next) { /* descending; the first round only looks for the greatest */
+        int mine[2 * VIT_LANES];
+        uint found = 0;
+        li below = (li)-1;
+        for (uint first = begin; first < end; first += VIT_LANES) {
+            li k = sparse_keys(keys, flags, first, end);
+            below = max(below, l_sel_i(L_LT(k, (li)key), k, (li)-1));
+            for (uint hits = l_bits(L_EQ(k, (li)key)); hits != 0; hits &= hits - 1)
+                mine[found++] = (int)(first + 31u - (uint)clz(hits & (~hits + 1u)));
+            if (found < VIT_LANES)
+                continue;
+            sparse_estimate(SPARSE_ARGUMENTS, flags, out, mine, VIT_LANES, key WORK_PASS);
+            found -= VIT_LANES;
+            for (uint i = 0; i < found; i++)
+                mine[i] = mine[VIT_LANES + i];
+        }
+        if (found > 0) {
+            for (uint i = found; i < VIT_LANES; i++)
+                mine[i] = mine[0];
+            sparse_estimate(SPARSE_ARGUMENTS, flags, out, mine, found, key WORK_PASS);
+        }
+        next = l_reduce_max(below);
+    }
+}
+
+/* The coarse samples: a work-item's are those of a tile, or with one lane, where nothing need go together, a single one. */
+kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMETERS)
+{
+    uint id = (uint)get_global_id(0), slots = scene->tile * scene->tile / (16u / SPARSE_BLOCK), count = VIT_LANES == 1 ? 1 : slots;
+    if (id >= sparse_count(scene) / count)
+        return;
+    for (uint i = id * count; i < (id + 1) * count; i++)
+        for (uint k = 0; k < SPARSE_FLOATS; k++)
+            coarse[(size_t)i * SPARSE_FLOATS + k] = k < 3 ? -1.0f : 0.0f;
+    WORK_BEGIN
+    sparse_tile(SPARSE_ARGUMENTS, (global const uint *)0, coarse, id, count WORK_PASS);
+    WORK_END
+}
+
+/* The samples that `interpolate` flagged. */
+kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global float *indirect WORK_PARAMETERS)
+{
+    uint id = (uint)get_global_id(0), count = VIT_LANES == 1 ? 1 : scene->tile * scene->tile;
+    if (id >= scene->samples / count)
+        return;
+    WORK_BEGIN
+    sparse_tile(SPARSE_ARGUMENTS, flags, indirect, id, count WORK_PASS);
+    WORK_END
+}
+
+/* How far a coarse sample lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from their tangent
+ * plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step metres there. */
+static inline lf sparse_agreement(global const float *c, lv3 p, lv3 s, lf per_step)
+{
+    lf off = lv3_dot(lv3_sub(p, lv3_load(c + 3)), s) * per_step, cosine = l_max(lv3_dot(s, lv3_load(c + 6)), (lf)0);
+    cosine *= cosine;
+    cosine *= cosine;
+    return l_max(fma(-off, off, (lf)1), (lf)0) * (cosine * cosine);
+}
+
+/* The coarse block x, y of the picture, or NULL beyond it. */
+static inline global const float *sparse_block(global const vit_scene *scene, global const float *coarse, uint x, uint y)
+{
+    uint shift = 29u - (uint)clz(scene->tile), across = scene->tiles_x << shift, down = scene->tiles_y << shift, inner = (1u << shift) - 1;
+    if (x >= across || y >= down)
+        return 0;
+    uint block = (((y >> shift) * scene->tiles_x + (x >> shift)) << (2 * shift)) + ((y & inner) << shift) + (x & inner);
+    return coarse + (size_t)block * (SPARSE_BLOCK * SPARSE_FLOATS);
+}
+
+/* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
+ * and no light yet. */
+kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
+                        global const float *position, global const uint *normal, global const float *coarse, global float *indirect,
+                        global uint *flags)
+{
+    uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
+    if (block >= n / 16)
+        return;
+    global const vit_camera *camera = cameras + frame;
+    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2], step = (float)SPARSE_STEP * sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
+    uint shift = 29u - (uint)clz(scene->tile), tile = block >> (2 * shift), in_tile = block & ((1u << (2 * shift)) - 1);
+    uint bx = ((tile % scene->tiles_x) << shift) + (in_tile & ((1u << shift) - 1)), by = ((tile / scene->tiles_x) << shift) + (in_tile >> shift);
+    global const float *corner[4];
+    for (uint k = 0; k < 4; k++)
+        corner[k] = sparse_block(scene, coarse, bx + (k & 1), by + (k >> 1));
+    for (uint at = 0; at < 16; at += VIT_LANES) {
+        uint first = block * 16 + at;
+        li has = L_GE(L_AS_INT(L_LOAD(keys + first)), (li)0), pixel = (int)at + L_INDEX;
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, (lf)1e-30f);
+        lf weights = (lf)0, x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
+        for (uint cy = 0; cy <= SPARSE_ROW; cy++)
+            for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
+                global const float *c = corner[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)];
+                lf tent = l_max(1.0f - fabs(x - (float)cx), (lf)0) * l_max(1.0f - fabs(y - (float)cy), (lf)0);
+                if (!c || !l_any(has & L_GT(tent, (lf)0)))
+                    continue;
+                c += (cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW) * SPARSE_FLOATS;
+                if (c[0] < 0)
+                    continue;
+                lf w = tent * sparse_agreement(c, p, s, per_step);
+                sum = lv3_along(sum, lv3_load(c), w);
+                weights += w;
+            }
+        li good = has & L_GE(weights, (lf)SPARSE_LEAST);
+        lf scale = l_sel(good, 1.0f / l_max(weights, (lf)SPARSE_LEAST), (lf)0);
+        lv3_store_planes(lv3_scale(sum, scale), indirect, n, first);
+        flagged |= l_bits(has & ~good) << at;
+    }
+    flags[block] = flagged;
+}
+#endif

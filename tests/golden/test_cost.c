@@ -1,0 +1,293 @@
+/* vitrine-cost as a user runs it, on a small room with a still and a moving light. Hard to test since times vary: what is
+ * stated holds whatever the times are. One sweep is made, and its CSV is the witness: it agrees with the JSON; the fronts are
+ * what a look at all pairs finds; settings that change no bit have the default's errors; the choice of --fit is what an
+ * exhaustive look at the CSV of the same run says, and of
+ * --fit-work the same in two runs; a budget too small is exit 3 with the closest miss; --write changes the quality block and
+ * nothing else, and what it wrote bakes. */
+#include "scene.h"
+#include "test_packs.h"
+#include <math.h>
+#include <stdbool.h>
+#include <sys/stat.h>
+
+#define TOOL_COST VIT_BUILD_DIR "/vitrine-cost"
+#define LAB VIT_BUILD_DIR "/tests/golden/cost"
+#define SCENE TEST_PACKS "/room.cfg"
+#define MEASURE                                                                                                                \
+    TOOL_COST                                                                                                                  \
+    " " SCENE " --settings 7 --knobs photons,estimate,tile,lanes --repeats 7 --reference-error 0.01 --max-samples 64 "         \
+    "--cache " LAB "/cache --quiet "
+
+enum { ROWS = 32, COLUMNS = 48, CELL = 512 };
+
+typedef struct table {
+    int rows, columns;
+    char head[COLUMNS][64];
+    char cell[ROWS][COLUMNS][CELL];
+} table;
+
+static table csv;
+static tool_run run;
+
+/* One cell of RFC 4180 text from *at on; true: it was the last of its line. */
+static bool read_cell(const char **at, char *out, size_t room) {
+    size_t used = 0;
+    bool quoted = **at == '"';
+    const char *p = *at + quoted;
+    for (; *p && (quoted || (*p != ',' && *p != '\n')); p++) {
+        if (quoted && *p == '"') {
+            if (p[1] != '"') {
+                quoted = false;
+                continue;
+            }
+            p++;
+        }
+        assert_true(used + 1 < room);
+        out[used++] = *p;
+    }
+    out[used] = '\0';
+    const bool last = *p != ',';
+    *at = *p ? p + 1 : p;
+    return last;
+}
+
+static char *read_whole(const char *path) {
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        fail_msg("%s is missing", path);
+    char *text = calloc(1, 1 << 24);
+    assert_non_null(text);
+    assert_true(fread(text, 1, (1 << 24) - 1, f) > 0);
+    (void)fclose(f);
+    return text;
+}
+
+static void read_csv(const char *path) {
+    char *text = read_whole(path);
+    const char *at = text;
+    memset(&csv, 0, sizeof csv);
+    while (!read_cell(&at, csv.head[csv.columns++], sizeof csv.head[0]))
+        assert_true(csv.columns < COLUMNS);
+    while (*at) {
+        assert_true(csv.rows < ROWS);
+        for (int c = 0; c < csv.columns; c++)
+            assert_int_equal(read_cell(&at, csv.cell[csv.rows][c], CELL), c + 1 == csv.columns);
+        csv.rows++;
+    }
+    free(text);
+}
+
+static const char *text_at(int row, const char *column) {
+    for (int c = 0; c < csv.columns; c++)
+        if (strcmp(csv.head[c], column) == 0)
+            return csv.cell[row][c];
+    fail_msg("no column '%s'", column);
+    return NULL;
+}
+
+static double at(int row, const char *column) {
+    return strtod(text_at(row, column), NULL);
+}
+
+static int row_of(const char *name) {
+    for (int i = 0; i < csv.rows; i++)
+        if (strcmp(text_at(i, "name"), name) == 0)
+            return i;
+    fail_msg("no setting '%s'", name);
+    return -1;
+}
+
+static int sweep_once(void **state) {
+    (void)state;
+    test_packs_begin();
+    (void)mkdir(LAB, 0777);
+    tool(&run, MEASURE "-o " LAB "/report --fit 100000");
+    tool_succeeds(&run);
+    read_csv(LAB "/report/report.csv");
+    return 0;
+}
+
+static void every_setting_is_there_with_numbers_that_make_sense(void **state) {
+    (void)state;
+    assert_int_equal(csv.rows, 7);
+    assert_string_equal(text_at(0, "name"), "default");
+    for (int i = 0; i < csv.rows; i++) {
+        assert_true(at(i, "ms") > 0 && at(i, "ms_p95") >= at(i, "ms") && at(i, "timed") == 7);
+        assert_true(at(i, "total_nmse") > 0 && at(i, "total_nmse") < 1 && at(i, "work") > 0);
+        assert_true(at(i, "device_bytes") > 1e5 && at(i, "pack_bytes") > 1e4);
+    }
+    const int few = row_of("photons 500"), buckets = row_of("estimate buckets");
+    assert_true(at(few, "total_nmse") > at(0, "total_nmse")); /* fewer photons, more noise */
+    assert_true(at(few, "work") < at(0, "work") && at(buckets, "work") < at(0, "work"));
+    assert_true(at(buckets, "total_nmse") != at(0, "total_nmse"));
+}
+
+static void what_changes_no_bit_has_the_defaults_errors(void **state) {
+    int same = 0;
+    (void)state;
+    for (int i = 1; i < csv.rows; i++) {
+        const char *knob = text_at(i, "knob");
+        if (strcmp(knob, "lanes") != 0 && strcmp(knob, "tile") != 0)
+            continue;
+        same++;
+        assert_string_equal(text_at(i, "total_nmse"), text_at(0, "total_nmse"));
+        assert_string_equal(text_at(i, "unlimited_ssim"), text_at(0, "unlimited_ssim"));
+        if (strcmp(knob, "lanes") == 0)
+            assert_string_equal(text_at(i, "work"), text_at(0, "work")); /* exact counts that are equal at every width */
+        assert_int_equal(at(i, "elsewhere"), strcmp(knob, "lanes") == 0);
+    }
+    assert_int_equal(same, 2);
+}
+
+static void json_says_the_same_as_csv(void **state) {
+    char *json = read_whole(LAB "/report/report.json"), *p = json;
+    (void)state;
+    for (int i = 0; i < csv.rows; i++) {
+        char want[CELL + 64];
+        (void)snprintf(want, sizeof want, "\"name\": \"%s\"", text_at(i, "name"));
+        p = strstr(p, want);
+        if (!p)
+            fail_msg("report.json lacks %s", want);
+        (void)snprintf(want, sizeof want, "\"ms\": %s", text_at(i, "ms"));
+        assert_non_null(strstr(p, want));
+        (void)snprintf(want, sizeof want, "\"work\": %s,", text_at(i, "work"));
+        assert_non_null(strstr(p, want));
+        (void)snprintf(want, sizeof want, "\"nmse\": %s", text_at(i, "total_nmse"));
+        assert_non_null(strstr(p, want));
+    }
+    free(json);
+    free(read_whole(LAB "/report/index.html"));
+}
+
+static bool beaten(int i, const char *error) {
+    for (int k = 0; k < csv.rows; k++) {
+        const double ms = at(k, "ms") - at(i, "ms"), worse = at(k, error) - at(i, error);
+        if (k != i && at(k, "elsewhere") == 0 && ms <= 0 && worse <= 0 && (ms < 0 || worse < 0 || k < i))
+            return true;
+    }
+    return false;
+}
+
+static void the_fronts_are_what_a_look_at_all_pairs_finds(void **state) {
+    int on = 0;
+    (void)state;
+    for (int i = 0; i < csv.rows; i++) {
+        const bool takes_part = at(i, "elsewhere") == 0;
+        assert_int_equal(at(i, "front"), takes_part && !beaten(i, "total_nmse"));
+        assert_int_equal(at(i, "front_relmse"), takes_part && !beaten(i, "total_relmse"));
+        on += at(i, "front") == 1;
+    }
+    assert_true(on >= 2);
+}
+
+/* Of the CSV at hand: the least error whose price fits. */
+static int best_of(const char *price, double budget) {
+    int best = -1;
+    for (int i = 0; i < csv.rows; i++)
+        if (at(i, "elsewhere") == 0 && at(i, price) <= budget &&
+            (best < 0 || at(i, "total_nmse") < at(best, "total_nmse") ||
+             (at(i, "total_nmse") == at(best, "total_nmse") && at(i, price) < at(best, price))))
+            best = i;
+    return best;
+}
+
+/* The name of the choice in what the tool printed: the line before its quality block. */
+static void chosen_name(char *name, size_t room) {
+    char *block = strstr(run.out, "\nquality: {");
+    assert_non_null(block);
+    *block = '\0';
+    (void)snprintf(name, room, "%s", strrchr(run.out, '\n') + 1);
+}
+
+static void the_choice_is_what_the_table_says(void **state) {
+    char name[128], again[128];
+    (void)state;
+    tool(&run, MEASURE "-o " LAB "/other --fit 100000");
+    tool_succeeds(&run);
+    read_csv(LAB "/other/report.csv");
+    chosen_name(name, sizeof name);
+    assert_string_equal(name, text_at(best_of("ms_p95", 100000), "name"));
+    const double budget = (at(row_of("photons 500"), "work") + at(0, "work")) / 2;
+    tool(&run, MEASURE "--fit-work %.0f", floor(budget));
+    tool_succeeds(&run);
+    chosen_name(name, sizeof name);
+    assert_string_equal(name, text_at(best_of("work", floor(budget)), "name"));
+    tool(&run, MEASURE "--fit-work %.0f --threads 1", floor(budget));
+    tool_succeeds(&run);
+    chosen_name(again, sizeof again);
+    assert_string_equal(name, again);
+}
+
+static void a_budget_that_nothing_fits_names_the_closest_miss(void **state) {
+    int least = 0;
+    char want[160];
+    (void)state;
+    for (int i = 1; i < csv.rows; i++)
+        least = at(i, "elsewhere") == 0 && at(i, "work") < at(least, "work") ? i : least;
+    tool(&run, MEASURE "--fit-work 1000");
+    assert_int_equal(run.code, VIT_BUDGET);
+    (void)snprintf(want, sizeof want, "vitrine-cost: no setting fits 1000 work units a frame: the closest, '%s', takes %s, ",
+                   text_at(least, "name"), text_at(least, "work"));
+    assert_non_null(strstr(run.err, want)); /* perhaps after a warning */
+    tool(&run, MEASURE "--fit 0.001");
+    assert_int_equal(run.code, VIT_BUDGET);
+    assert_non_null(strstr(run.err, "no setting fits 0.001 ms: the closest, '"));
+}
+
+static void write_changes_the_quality_block_and_nothing_else(void **state) {
+    char *before = read_whole(SCENE), name[128];
+    FILE *f = fopen(TEST_PACKS "/room-fit.cfg", "wb"); /* beside the mesh that it names */
+    (void)state;
+    assert_non_null(f);
+    assert_int_equal(fwrite(before, 1, strlen(before), f), strlen(before));
+    assert_int_equal(fclose(f), 0);
+    tool(&run, MEASURE "--fit-work 1000000000000 --write " TEST_PACKS "/room-fit.cfg");
+    tool_succeeds(&run);
+    char block[1024];
+    (void)snprintf(block, sizeof block, "%.1000s", strstr(run.out, "\nquality: {") + 1);
+    chosen_name(name, sizeof name);
+    char *after = read_whole(TEST_PACKS "/room-fit.cfg"), *at_before = strstr(before, "quality:"),
+         *at_after = strstr(after, "quality:");
+    assert_true(at_before && at_after && at_before - before == at_after - after);
+    assert_memory_equal(before, after, (size_t)(at_before - before));
+    assert_string_equal(at_after, block); /* the block is the scene's last line */
+    tool(&run, VIT_BUILD_DIR "/vitrine-bake " TEST_PACKS "/room-fit.cfg -o " LAB "/fit.vit --quiet");
+    tool_succeeds(&run);
+    free(before);
+    free(after);
+}
+
+static void mistakes_are_named(void **state) {
+    (void)state;
+    tool(&run, TOOL_COST " " SCENE);
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "what for?");
+    tool(&run, TOOL_COST " " SCENE " -o " LAB "/none --knobs photons,wrong");
+    assert_int_equal(run.code, VIT_USAGE);
+    assert_non_null(strstr(run.err, "there is no knob 'wrong'"));
+    tool(&run, TOOL_COST " " SCENE " -o " LAB "/none --quiet --frame 2");
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "the path has frames 0 to 1");
+    tool(&run, TOOL_COST " " SCENE " -o " LAB "/none --repeats 6");
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "--repeats");
+    tool(&run, TOOL_COST " " SCENE " --fit 33 --fit-work 5");
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "one budget at a time");
+    tool(&run, TOOL_COST " no-such.cfg -o " LAB "/none");
+    assert_int_equal(run.code, VIT_BAD_INPUT);
+    tool(&run, TOOL_COST " --help");
+    tool_succeeds(&run);
+    assert_non_null(strstr(run.out, "--fit-work"));
+    assert_non_null(strstr(run.out, "normal_keys"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(mistakes_are_named),
+        cmocka_unit_test(every_setting_is_there_with_numbers_that_make_sense),
+        cmocka_unit_test(what_changes_no_bit_has_the_defaults_errors),
+        cmocka_unit_test(json_says_the_same_as_csv),
+        cmocka_unit_test(the_fronts_are_what_a_look_at_all_pairs_finds),
+        cmocka_unit_test(the_choice_is_what_the_table_says),
+        cmocka_unit_test(a_budget_that_nothing_fits_names_the_closest_miss),
+        cmocka_unit_test(write_changes_the_quality_block_and_nothing_else),
+    };
+    return cmocka_run_group_tests(tests, sweep_once, NULL);
+}
