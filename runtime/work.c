@@ -25,7 +25,7 @@
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
     X(estimate_list, (4 + 12 + 4 + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
-    X(estimate_buckets, (4 + 12 + 4 + 12) * z->samples + 16 * w[VIT_WORK_evaluations] + BOX * (w[VIT_WORK_evaluations] / 8))   \
+    X(estimate_buckets, (4 + 12 + 4 + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
     X(resolve, z->shown * z->samples + z->pixel * z->pixels)                                                                   \
@@ -40,6 +40,7 @@ typedef struct sizes {
     uint64_t nodes, inner, listed; /* nodes, of those that there is room for: all, with children, with a list but the root */
     uint64_t entries;              /* list entries kept */
     uint64_t lights, bucket;       /* bytes: of a frame's lights, of a cluster's buckets */
+    uint64_t corner;               /* bytes of a cluster's box that each of its eight octants takes, smoothed */
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
 } sizes;
 
@@ -67,9 +68,11 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
                .traced = s->photons - s->baked,
                .lights = s->lights * sizeof(vit_light),
                .bucket = VIT_BUCKETS_OF(l) * 16,
+               .corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX / 8,
+               .nodes = 1, /* before the first frame there is the root */
                .shown = shown_bytes(l),
                .pixel = vit_format_bytes(l->format) + (l->effects & ON_DOTS ? 4u : 0u)};
-    if (l->effects & ON(PHOTONS)) {
+    if ((l->effects & ON(PHOTONS)) && c[VIT_COUNTER_nodes] > 0) {
         z.nodes = least(c[VIT_COUNTER_nodes], l->max_nodes);
         z.inner = least(c[VIT_COUNTER_nodes] - c[VIT_COUNTER_clusters], z.nodes);
         z.listed = (l->effects & ON(LIST) ? z.nodes : z.inner) - 1;
