@@ -11,6 +11,7 @@ $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write
 $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
+$(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(call obj,$(BAKE_PARTS) $(COST_PARTS)) $(B)/libvitrine.a
