@@ -75,9 +75,7 @@ static void a_report_file_is_json_with_times_work_and_memory(void **state) {
     assert_string_equal(r.out, "");
     assert_string_equal(r.err, "");
     load(JSON, file);
-    const char *end = json_value(file);
-    assert_non_null(end);
-    assert_string_equal(end, "");
+    assert_true(json_valid(file));
     static const char *const parts[] = {"\"frames\": {\"first\"", "\"name\": \"visibility\"", "\"name\": \"resolve\""};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
         const double p50 = number_after(file, parts[i], "p50"), p95 = number_after(file, parts[i], "p95"),
