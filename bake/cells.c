@@ -12,7 +12,7 @@ static uint32_t parts_of(const geometry *g, uint32_t side, float edge) {
     const vec3 e[3] = {vec3_sub(b, a), vec3_sub(c, b), vec3_sub(a, c)};
     const float l2 = float_max(float_max(vec3_dot(e[0], e[0]), vec3_dot(e[1], e[1])), vec3_dot(e[2], e[2]));
     const float longest = sqrtf(l2), square = sqrtf(2.0f * side_area(g, side));
-    const float parts = ceilf(float_min(longest, float_max(square, longest * 0.25f)) / edge); /* slivers' cells are long, not many */
+    const float parts = ceilf(float_min(longest, float_max(square, longest * 0.5f)) / edge); /* slivers' cells are long, not many */
     return parts >= 1.0f ? (uint32_t)float_min(parts, MOST_PARTS) : 1; /* an edge may be too long for a float's square */
 }
 

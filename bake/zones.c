@@ -121,7 +121,8 @@ uint64_t zones_key(vec3 p, vec3 n, float edge) {
     const uint64_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     const float sign = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
     p = vec3_along(p, n, edge * 0x1p-6f); /* surfaces on a cube's face lie in the cube in front */
-    return (cube(p.x, edge) << 40 | cube(p.y, edge) << 20 | cube(p.z, edge)) << 3 | axis << 1 | (sign < 0.0f ? 1u : 0u) | (uint64_t)1 << 63;
+    const float thin = edge * 0.25f; /* along the normal: a curtain's front and the wall behind it are apart */
+    return (cube(p.x, axis == 0 ? thin : edge) << 40 | cube(p.y, axis == 1 ? thin : edge) << 20 | cube(p.z, axis == 2 ? thin : edge)) << 3 | axis << 1 | (sign < 0.0f ? 1u : 0u) | (uint64_t)1 << 63;
 }
 
 /* What the camera's rays meet, on a grid of pixels and frames. */
@@ -129,7 +130,7 @@ typedef struct look {
     zones *z;
     uint32_t step, columns, rows, frame_step;
     uint32_t *side;
-    uint64_t *key;
+    float (*weight)[2]; /* b1, b2 */
 } look;
 
 static void look_once(void *user, uint32_t i) {
@@ -147,46 +148,15 @@ static void look_once(void *user, uint32_t i) {
         return;
     const vec3 n = side_face(z->g, 2 * triangle);
     const uint32_t back = vec3_dot(n, d) > 0.0f;
+    float b[3];
+    (void)photon_surface_seen(&z->scene, o, d, t, triangle, 0.0f, b);
     l->side[i] = 2 * triangle + back;
-    l->key[i] = zones_key(vec3_along(o, d, t), vec3_scale(n, back ? -1.0f : 1.0f), ZONES_COARSE * z->radius);
+    l->weight[i][0] = b[1];
+    l->weight[i][1] = b[2];
 }
 
 static uint32_t slot_of(uint64_t key, uint32_t room) {
     return (pcg((uint32_t)key) ^ pcg((uint32_t)(key >> 32) * 0x9e3779b9u)) & (room - 1);
-}
-
-static bool find_seen(zones *z) {
-    const vit_scene *s = z->in->scene;
-    const uint32_t least = s->frames < LEAST_FRAMES ? s->frames : LEAST_FRAMES;
-    look l = {.z = z, .step = 1};
-    while (((uint64_t)s->width / l.step + 1) * (s->height / l.step + 1) * least > MOST_LOOKS)
-        l.step++;
-    l.columns = (s->width + l.step - 1) / l.step;
-    l.rows = (s->height + l.step - 1) / l.step;
-    const uint64_t in_frame = (uint64_t)l.columns * l.rows;
-    l.frame_step = (uint32_t)((s->frames * in_frame + MOST_LOOKS - 1) / MOST_LOOKS);
-    const uint32_t looks = (uint32_t)(in_frame * ((s->frames + l.frame_step - 1) / l.frame_step));
-    l.side = malloc(looks * sizeof *l.side);
-    l.key = malloc(looks * sizeof *l.key);
-    z->seen_side = calloc(2 * (size_t)z->in->triangles, 1);
-    for (z->seen_room = 1024; z->seen_room < 2 * looks; z->seen_room *= 2)
-        ;
-    z->seen = calloc(z->seen_room, sizeof *z->seen);
-    const bool fine = l.side && l.key && z->seen_side && z->seen;
-    if (fine)
-        parallel_for(z->in->threads, looks, look_once, &l);
-    for (uint32_t i = 0; fine && i < looks; i++) {
-        if (l.side[i] == VIT_NONE)
-            continue;
-        z->seen_side[l.side[i]] = 1;
-        uint32_t slot = slot_of(l.key[i], z->seen_room);
-        while (z->seen[slot] && z->seen[slot] != l.key[i])
-            slot = (slot + 1) & (z->seen_room - 1);
-        z->seen[slot] = l.key[i];
-    }
-    free(l.side);
-    free(l.key);
-    return fine;
 }
 
 static bool was_seen(const zones *z, uint64_t key) {
@@ -216,6 +186,47 @@ static uint32_t number_of(numbering *n, uint64_t key) {
 static float cell_edge(void *user, uint32_t side) {
     const zones *z = user;
     return z->radius * (z->seen_side[side] ? ZONES_FINE : ZONES_COARSE);
+}
+
+/* Divides the surface, finely where the path sees it, and notes the cubes of the cells that it sees. */
+static vit_status find_seen(zones *z, vit_text *why) {
+    const vit_scene *s = z->in->scene;
+    const uint32_t least = s->frames < LEAST_FRAMES ? s->frames : LEAST_FRAMES;
+    look l = {.z = z, .step = 1};
+    while (((uint64_t)s->width / l.step + 1) * (s->height / l.step + 1) * least > MOST_LOOKS)
+        l.step++;
+    l.columns = (s->width + l.step - 1) / l.step;
+    l.rows = (s->height + l.step - 1) / l.step;
+    const uint64_t in_frame = (uint64_t)l.columns * l.rows;
+    l.frame_step = (uint32_t)((s->frames * in_frame + MOST_LOOKS - 1) / MOST_LOOKS);
+    const uint32_t looks = (uint32_t)(in_frame * ((s->frames + l.frame_step - 1) / l.frame_step));
+    l.side = malloc(looks * sizeof *l.side);
+    l.weight = malloc(looks * sizeof *l.weight);
+    z->seen_side = calloc(2 * (size_t)z->in->triangles, 1);
+    for (z->seen_room = 1024; z->seen_room < 2 * looks; z->seen_room *= 2)
+        ;
+    z->seen = calloc(z->seen_room, sizeof *z->seen);
+    vit_status status = VIT_FAILED;
+    if (l.side && l.weight && z->seen_side && z->seen) {
+        parallel_for(z->in->threads, looks, look_once, &l);
+        for (uint32_t i = 0; i < looks; i++)
+            if (l.side[i] != VIT_NONE)
+                z->seen_side[l.side[i]] = 1;
+        status = cells_divide(z->g, z->in->triangles, cell_edge, z, z->c, why);
+    }
+    for (uint32_t i = 0; status == VIT_OK && i < looks; i++) {
+        if (l.side[i] == VIT_NONE)
+            continue;
+        const uint32_t cell = cells_at(z->c, l.side[i], l.weight[i][0], l.weight[i][1]);
+        const uint64_t key = zones_key(cells_center(z->c, z->g, cell), side_face(z->g, l.side[i]), ZONES_COARSE * z->radius);
+        uint32_t slot = slot_of(key, z->seen_room);
+        while (z->seen[slot] && z->seen[slot] != key)
+            slot = (slot + 1) & (z->seen_room - 1);
+        z->seen[slot] = key;
+    }
+    free(l.side);
+    free(l.weight);
+    return status;
 }
 
 /* Groups cells into patches and, where they are seen, receivers. */
@@ -264,30 +275,18 @@ static void release(zones *z) {
     free(z->pairs);
 }
 
-#include <time.h>
 static void report(const zones *z, double done) {
-    static double last;
-    struct timespec ts;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &ts);
-    double now = (double)ts.tv_sec + 1e-9 * (double)ts.tv_nsec;
-    if (getenv("ZD"))
-        fprintf(stderr, "%.2f: cpu %.1f s; cells %u receivers %u patches %u points %u pairs %zu wrong %.4f open %.0f\n", done, now - last, z->c->count, z->receiver_count, z->patch_count, z->point_count,
-                z->pair_count, z->found->wrong, z->found->open_area);
-    last = now;
     if (z->in->progress)
         z->in->progress(z->in->user, done);
 }
 
 static vit_status fill(zones *z, vit_text *why) {
     snprintf(why->text, sizeof why->text, "zones: out of memory");
-    bool fine = find_seen(z);
+    const vit_status status = find_seen(z, why);
     report(z, 0.05);
-    if (!fine)
-        return VIT_FAILED;
-    const vit_status status = cells_divide(z->g, z->in->triangles, cell_edge, z, z->c, why);
     if (status != VIT_OK)
         return status;
-    fine = group_cells(z) && zones_patches(z, why);
+    bool fine = group_cells(z) && zones_patches(z, why);
     report(z, 0.35);
     fine = fine && zones_pairs(z);
     report(z, 0.75);

@@ -23,8 +23,8 @@ typedef struct areas {
 typedef struct corner {
     const areas *a;
     vec3 p, n;
-    uint32_t accept;
-    wide accepted, front; /* sums: accepted zones; all surfaces that face the same half space */
+    uint32_t accept, alike;
+    wide accepted, lit_alike, front; /* sums: zones accepted, lit alike; all surfaces that face the same half space */
 } corner;
 
 static void add_block(corner *c, const area_block *b) {
@@ -35,6 +35,7 @@ static void add_block(corner *c, const area_block *b) {
     wide k = 1.0f - (x * x + y * y + w * w + off * off * z->flatten) * (1.0f / (z->radius * z->radius));
     k = (wide)((wide_i)(k * b->area) & (wide_i)(k > zero));
     c->accepted += (wide)((wide_i)k & (wide_i)((b->zone & (int32_t)c->accept) != 0));
+    c->lit_alike += (wide)((wide_i)k & (wide_i)((b->zone & (int32_t)c->alike) != 0));
     c->front += (wide)((wide_i)k & (wide_i)(b->nx * c->n.x + b->ny * c->n.y + b->nz * c->n.z > zero));
 }
 
@@ -61,24 +62,28 @@ static uint32_t integrate(const areas *a, uint32_t cell, float area[3]) {
     const float disc = 0.5f * PHOTON_PI * z->radius * z->radius; /* the kernel's integral over a plane */
     const float fine = ZONES_FINE * z->radius;
     const int corners = cells_area(z->c, z->g, cell) < SMALL * fine * fine ? 1 : 3;
-    float front[3];
+    const uint32_t alike = z->in->zones ? z->receivers[z->receiver_of[cell]].alike : 0u;
+    float front[3], lit_alike[3];
     for (int m = 0; m < corners; m++) {
         const float b1 = corners == 1 ? (k.b1[0] + k.b1[1] + k.b1[2]) / 3.0f : k.b1[m];
         const float b2 = corners == 1 ? (k.b2[0] + k.b2[1] + k.b2[2]) / 3.0f : k.b2[m];
-        corner c = {.a = a, .p = side_place(z->g, side, b1, b2), .n = side_shading(z->g, side, b1, b2), .accept = accept};
+        corner c = {.a = a, .p = side_place(z->g, side, b1, b2), .n = side_shading(z->g, side, b1, b2), .accept = accept, .alike = alike};
         grid_rows(&a->points, c.p, z->radius, add_blocks, &c);
         area[m] = total(c.accepted) / disc;
+        lit_alike[m] = total(c.lit_alike) / disc;
         front[m] = total(c.front) / disc;
     }
     for (int m = corners; m < 3; m++) {
         area[m] = area[0];
+        lit_alike[m] = lit_alike[0];
         front[m] = front[0];
     }
-    /* Hardly anything to gather from: better light from all about than none. */
-    const bool all = !z->in->zones || (area[0] + area[1] + area[2]) / 3.0f < ZONES_LEAST_AREA;
+    /* Where there is hardly anything to gather from, better light that is not seen than none. */
+    const bool enough = z->in->zones && area[0] + area[1] + area[2] >= 3.0f * ZONES_LEAST_AREA;
+    const bool stand_in = z->in->zones && lit_alike[0] + lit_alike[1] + lit_alike[2] >= 3.0f * ZONES_LEAST_AREA;
     for (int m = 0; m < 3; m++)
-        area[m] = float_max(all ? front[m] : area[m], 0.5f * ZONES_LEAST_AREA);
-    return all ? ~0u : accept;
+        area[m] = float_max(enough ? area[m] : stand_in ? lit_alike[m] : front[m], 0.5f * ZONES_LEAST_AREA);
+    return enough ? accept : stand_in ? alike : z->receivers[z->receiver_of[cell]].dark ? 0u : ~0u;
 }
 
 static void fill_cell(void *user, uint32_t i) {

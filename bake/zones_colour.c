@@ -9,6 +9,7 @@
 
 typedef struct tally {
     float want[VIT_ZONES], refuse[VIT_ZONES]; /* a receiver: weight of its patches of each colour */
+    float alike[VIT_ZONES];                   /* of those lit alike less the others */
 } tally;
 
 static void add(tally *t, const pair *p, uint32_t zone, float sign) {
@@ -52,12 +53,17 @@ bool zones_colour(zones *z) {
             for (size_t k = first[b]; k < first[b + 1]; k++)
                 add(tallies + z->pairs[of[k]].receiver, z->pairs + of[k], best, 1.0f);
         }
+    for (size_t i = 0; fine && i < z->pair_count; i++) { /* what may stand in where too little is seen */
+        const pair *q = z->pairs + i;
+        tallies[q->receiver].alike[z->patches[q->patch].zone] += q->alike ? q->weight : -q->wrong;
+    }
     double wrong = 0.0, all = 0.0;
     for (uint32_t i = 0; fine && i < z->receiver_count; i++)
         for (uint32_t c = 0; c < VIT_ZONES; c++) {
             const tally *t = tallies + i;
             const bool accept = z->in->zones ? t->want[c] > t->refuse[c] : true;
             z->receivers[i].accept |= accept ? 1u << c : 0u;
+            z->receivers[i].alike |= t->alike[c] > 0.0f ? 1u << c : 0u;
             wrong += (double)float_min(t->want[c], t->refuse[c]);
             all += (double)t->want[c] + (double)t->refuse[c];
         }

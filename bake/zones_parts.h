@@ -10,8 +10,9 @@
 #define ZONES_COARSE 0.25f  /* of the others; also a patch's edge */
 #define ZONES_POINTS 450.0f /* area points on a square of the radius */
 #define ZONES_TRIES 16u     /* rays that look whether a point is open */
+#define ZONES_FAR 0.05f     /* that are not longer than this part of the scene's diagonal need not be longer than a radius */
 #define ZONES_LIKE 2.5f     /* surfaces whose irradiance differs by a larger factor are unlike lit */
-#define ZONES_LEAST_AREA 0.1f /* with less of the kernel on accepted surfaces, all surfaces in front count */
+#define ZONES_LEAST_AREA 0.06f /* with less of the kernel on accepted surfaces, those lit alike count, seen or not; or else all */
 
 /* A small piece of surface, for integrals over area. */
 typedef struct area_point {
@@ -33,7 +34,7 @@ typedef struct patch {
 typedef struct pair {
     uint32_t receiver, patch;
     float weight, wrong;   /* of the kernel; cost of accepting what should not be */
-    bool accept;
+    bool accept, alike;    /* alike: accepted but for sight */
 } pair;
 
 /* Cells that lie close together and face alike accept the same zones. */
@@ -41,7 +42,8 @@ typedef struct receiver {
     uint32_t cell;         /* that stands for all */
     vec3 p, n;
     uint32_t first, count; /* its pairs */
-    uint32_t accept;
+    uint32_t accept, alike; /* zones */
+    bool dark;             /* hardly any light found on it */
 } receiver;
 
 typedef struct zones {
@@ -85,7 +87,7 @@ void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_
 
 /* Kernel (1 - d^2 / r^2) of a sample at p with normal n for a point at q; 0 outside. */
 float zones_kernel(const zones *z, vec3 p, vec3 n, vec3 q);
-/* A key that is equal for places in one cube of `edge` metres that face alike (6 directions). Never 0. */
+/* A key that is equal for places in one box, `edge` metres wide and a quarter of it deep, that face alike (6 directions). Never 0. */
 uint64_t zones_key(vec3 p, vec3 n, float edge);
 
 /* zones.c: what the camera sees. zones_surface.c: patches, photons, open points. zones_sight.c: receivers and pairs.

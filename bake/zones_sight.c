@@ -8,12 +8,15 @@
 #define FIRST_EYES 4u /* if these agree, they decide */
 #define DARK 0.5f     /* of accepting too little: less harm than too much */
 #define MOST_HARM 16.0f
+#define NOISE 0.02 /* of the mean irradiance */
+#define DIM 5.0f   /* of the noise: darker surfaces take no light that cannot be told to be theirs */
 
 typedef struct sight {
     zones *z;
     grid patches, points;
     vec3 *eyes;        /* EYES a patch, lifted */
     float *irradiance; /* a patch */
+    float least;       /* what is less than this is noise */
     size_t *first;     /* a receiver: its first pair */
 } sight;
 
@@ -89,22 +92,24 @@ static void visit_patch(void *user, uint32_t number) {
     if (!(weight > 0.0f))
         return;
     if (v->out) {
-        const float there = v->s->irradiance[number], here = v->irradiance, ratio = there / (here > 0.0f ? here : 1e-30f);
-        const bool alike = !z->in->by_light || !(here > 0.0f) || (ratio <= ZONES_LIKE && ratio >= 1.0f / ZONES_LIKE);
+        const float ratio = (v->s->irradiance[number] + v->s->least) / (v->irradiance + v->s->least);
+        const bool alike = !z->in->by_light || (ratio <= ZONES_LIKE && ratio >= 1.0f / ZONES_LIKE);
         pair *q = v->out + v->count;
         *q = (pair){.receiver = (uint32_t)(v->r - z->receivers), .patch = number, .weight = DARK * weight};
+        q->alike = alike;
         q->accept = alike && sees_patch(v->s, v->r, v->from, number);
         q->wrong = weight * float_min(float_max(ratio, 1.0f), MOST_HARM);
     }
     v->count++;
 }
 
-/* Irradiance from the photons within a fifth of the radius. */
+/* Irradiance from the photons within a fifth of the radius, on this surface: what hangs close before it is another. */
 static void visit_point(void *user, uint32_t i) {
     visit *v = user;
     const area_point *q = v->s->z->points + i;
     const vec3 o = vec3_sub(q->p, v->r->p);
-    const float near = v->s->z->radius * 0.2f, w = 1.0f - vec3_dot(o, o) / (near * near);
+    const float near = v->s->z->radius * 0.2f, off = vec3_dot(o, v->r->n);
+    const float w = 1.0f - fmaf(off * off, 24.0f, vec3_dot(o, o)) / (near * near);
     if (w > 0.0f && vec3_dot(q->n, v->r->n) > 0.5f) {
         v->flux += w * q->flux;
         v->area += w * q->area;
@@ -120,10 +125,11 @@ static void count_pairs(void *user, uint32_t i) {
 
 static void fill_pairs(void *user, uint32_t i) {
     const sight *s = user;
-    const receiver *r = s->z->receivers + i;
+    receiver *r = s->z->receivers + i;
     visit v = {.s = s, .r = r, .from = lift(s->z, r->p, r->n), .out = s->z->pairs + s->first[i]};
     grid_near(&s->points, r->p, s->z->radius * 0.2f, visit_point, &v);
     v.irradiance = v.area > 0.0f ? v.flux / v.area : 0.0f;
+    r->dark = v.irradiance < DIM * s->least;
     grid_near(&s->patches, r->p, s->z->radius * (1.0f + ZONES_COARSE), visit_patch, &v);
 }
 
@@ -154,6 +160,12 @@ bool zones_pairs(zones *z) {
     if (fine) {
         for (uint32_t i = 0; i < z->patch_count; i++)
             s.irradiance[i] = z->patches[i].area > 0.0f ? z->patches[i].flux / z->patches[i].area : 0.0f;
+        double flux = 0.0, area = 0.0;
+        for (uint32_t i = 0; i < z->patch_count; i++) {
+            flux += z->patches[i].area > 0.0f ? (double)z->patches[i].flux : 0.0;
+            area += (double)z->patches[i].area;
+        }
+        s.least = area > 0.0 ? (float)(NOISE * flux / area) : 0.0f;
         choose_receivers(z);
         if (z->in->zones) {
             parallel_for(z->in->threads, z->patch_count, open_eyes, &s);

@@ -6,7 +6,9 @@
 #include <string.h>
 
 #define MOST_POINTS (1u << 23)
-#define PILOT_PATHS (1u << 17) /* a probe frame */
+#define PILOT_MOST (1u << 20)   /* paths of the pilot */
+#define PILOT_LEAST (1u << 15)
+#define PILOT_A_PATCH 12u
 #define PILOT_FRAMES 8u
 #define PILOT_FIRST 0x40000000u /* path numbers, and so random numbers, that playing does not use */
 
@@ -90,6 +92,8 @@ static bool find_near(zones *z, nearness *n) {
 static vit_status count_photons(zones *z, float *flux, vit_text *why) {
     const vit_scene *s = z->in->scene;
     const uint32_t probes = s->frames < PILOT_FRAMES ? s->frames : PILOT_FRAMES;
+    uint32_t paths = z->patch_count < PILOT_MOST / PILOT_A_PATCH ? z->patch_count * PILOT_A_PATCH : PILOT_MOST;
+    paths = (paths < PILOT_LEAST ? PILOT_LEAST : paths) / probes;
     photons_light *lights = calloc(s->lights + 1u, sizeof *lights);
     vit_status status = lights ? VIT_OK : VIT_FAILED;
     for (uint32_t f = 0; f < probes && status == VIT_OK; f++) {
@@ -99,7 +103,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)
                 lights[count++] = (photons_light){frame[i], 0};
         for (uint32_t i = 0; i < count; i++)
-            lights[i].paths = PILOT_PATHS / count;
+            lights[i].paths = paths / count > 0 ? paths / count : 1;
         photons_input in = {.triangles = z->g->triangles,
                             .attributes = z->g->attributes,
                             .triangle_count = z->in->triangles,
@@ -109,7 +113,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
                             .box_pad = s->box_pad,
                             .radius = 1.0f,
                             .bounces = s->bounces,
-                            .first_path = PILOT_FIRST + f * PILOT_PATHS,
+                            .first_path = PILOT_FIRST + f * PILOT_MOST,
                             .cells = z->c,
                             .lights = lights,
                             .light_count = count};
@@ -125,10 +129,10 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
 
 typedef struct opening {
     zones *z;
-    const float *flux; /* a cell */
+    float far; /* metres */
 } opening;
 
-/* A point is open if light lands beside it where its own rays do, or if they leave the scene. */
+/* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     zones *z = o->z;
@@ -145,10 +149,8 @@ static void look_out(void *user, uint32_t i) {
         const uint32_t triangle = photon_rays_nearest(&z->rays, from, d, &t);
         if (triangle == VIT_NONE)
             return;
-        float b[3];
-        (void)photon_surface_seen(&z->scene, from, d, t, triangle, 0.0f, b);
-        const uint32_t side = 2 * triangle + (vec3_dot(side_face(z->g, 2 * triangle), d) > 0.0f), cell = cells_at(z->c, side, b[1], b[2]);
-        if (o->flux[cell] > 0.0f || (z->patch_of[cell] != VIT_NONE && z->patches[z->patch_of[cell]].flux > 0.0f))
+        const uint32_t side = 2 * triangle + (vec3_dot(side_face(z->g, 2 * triangle), d) > 0.0f);
+        if (t > o->far && !side_is_dark(z->g, side))
             return;
     }
     p->area = 0.0f;
@@ -195,6 +197,20 @@ static bool settle_points(zones *z, const float *flux) {
     return true;
 }
 
+static float diagonal(const zones *z) {
+    vec3 lo = vec3_load(z->g->triangles[0].v0), hi = lo;
+    for (uint32_t i = 0; i < z->in->triangles; i++) {
+        const vit_triangle *t = z->g->triangles + i;
+        const float *v[3] = {t->v0, t->v1, t->v2};
+        for (int k = 0; k < 3; k++) {
+            lo = (vec3){float_min(lo.x, v[k][0]), float_min(lo.y, v[k][1]), float_min(lo.z, v[k][2])};
+            hi = (vec3){float_max(hi.x, v[k][0]), float_max(hi.y, v[k][1]), float_max(hi.z, v[k][2])};
+        }
+    }
+    const vec3 d = vec3_sub(hi, lo);
+    return sqrtf(vec3_dot(d, d));
+}
+
 bool zones_patches(zones *z, vit_text *why) {
     nearness n = {.z = z};
     float *flux = calloc(z->c->count, sizeof *flux);
@@ -204,7 +220,7 @@ bool zones_patches(zones *z, vit_text *why) {
         for (uint32_t i = 0; i < z->c->count; i++)
             if (z->patch_of[i] != VIT_NONE)
                 z->patches[z->patch_of[i]].flux += flux[i];
-        opening o = {z, flux};
+        opening o = {z, float_min(z->radius, diagonal(z) * ZONES_FAR)};
         parallel_for(z->in->threads, z->point_count, look_out, &o);
         fine = settle_points(z, flux);
     }
