@@ -18,10 +18,12 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 1u
+#define VIT_PACK_VERSION 2u
 #define VIT_PACK_ALIGN 4096u
 
-/* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections. */
+/* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
+ * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how much of
+ * the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. */
 #define VIT_SECTIONS(X)                                                                                                          \
     X(META, vit_scene, 1u)                                                                                                       \
     X(CAMS, vit_camera, s->frames)                                                                                               \

@@ -1,6 +1,6 @@
 /* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
- * light whose photons are baked and a moving point light whose photons are traced, two frames. Every float is exact in binary,
- * so the pack has the same bytes with every compiler. */
+ * light whose photons are baked and a moving point light whose photons are traced, zones and areas, two frames. Every float is
+ * exact in binary, so the pack has the same bytes with every compiler. */
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
 
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4 };
+enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4, FIXTURE_CELLS = 27 };
 
 typedef struct pack_fixture {
     vit_scene scene;
@@ -21,6 +21,8 @@ typedef struct pack_fixture {
     vit_texture textures[1];
     vit_mip mips[3];
     vit_u32 texels[FIXTURE_TEXELS];
+    vit_u32 sides[2 * FIXTURE_TRIANGLES]; /* 24 in use for the cube */
+    vit_cell cells[FIXTURE_CELLS];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -92,7 +94,8 @@ static inline void fixture_scene(vit_scene *s) {
                      .fps = 30,
                      .tile = 16,
                      .effects = VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_SPOT | VIT_EFFECT_BIT_RANGE | VIT_EFFECT_BIT_TEXTURES |
-                                VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST,
+                                VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_ZONES |
+                                VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE,
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,
@@ -109,7 +112,8 @@ static inline void fixture_scene(vit_scene *s) {
                      .slice_scale = 2,
                      .background = {0.25f, 0.5f, 1},
                      .max_nodes = 64,
-                     .max_list = 1000};
+                     .max_list = 1000,
+                     .cells = FIXTURE_CELLS};
 }
 
 static inline void fixture_frames(pack_fixture *f) {
@@ -160,8 +164,18 @@ static inline void fixture_surfaces(pack_fixture *f) {
                                      .radius2 = 0.25f,
                                      .direction = {0, -1, 0},
                                      .inv_radius2 = 4,
-                                     .power = {1, 0.5f, 0.25f}};
+                                     .power = {1, 0.5f, 0.25f},
+                                     .zone = 1u << (31 - i)};
     f->photons[FIXTURE_BAKED - 1] = (vit_photon){.radius2 = -1}; /* an empty slot */
+}
+
+/* The first side has 2 x 2 cells, the others one each. */
+static inline void fixture_cells(pack_fixture *f) {
+    for (vit_u32 i = 0; i < 2 * FIXTURE_TRIANGLES; i++)
+        f->sides[i] = i == 0 ? 2u << VIT_SIDE_PARTS_SHIFT : 1u << VIT_SIDE_PARTS_SHIFT | (3 + i) % FIXTURE_CELLS;
+    for (vit_u32 i = 0; i < FIXTURE_CELLS; i++)
+        f->cells[i] =
+            (vit_cell){.accept = 0xffffffffu << i, .word = VIT_CELL_AREA_LEAST | (256 + i) << 9 | 511u << 18 | i << 27};
 }
 
 static inline void fixture_make(pack_fixture *f) {
@@ -171,6 +185,7 @@ static inline void fixture_make(pack_fixture *f) {
     fixture_tree(f);
     fixture_frames(f);
     fixture_surfaces(f);
+    fixture_cells(f);
     vit_pack_derive(&f->scene, NULL);
 }
 
@@ -206,6 +221,8 @@ static inline vit_status fixture_assemble(const pack_fixture *f, void **bytes, s
                                              [VIT_SECTION_TEXR] = f->textures,
                                              [VIT_SECTION_MIPS] = f->mips,
                                              [VIT_SECTION_ATLS] = f->texels,
+                                             [VIT_SECTION_SIDE] = f->sides,
+                                             [VIT_SECTION_CELL] = f->cells,
                                              [VIT_SECTION_PHOT] = f->photons,
                                              [VIT_SECTION_GOLD] = f->golds}};
     return pack_assemble(&sections, bytes, size, why);

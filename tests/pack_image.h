@@ -29,6 +29,8 @@ typedef struct image {
     vit_material *materials;
     vit_texture *textures;
     vit_mip *mips;
+    vit_u32 *sides;
+    vit_cell *cells;
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -52,6 +54,8 @@ static inline image image_of(const pack_fixture *f) {
     im.materials = section(&im, VIT_SECTION_MATL);
     im.textures = section(&im, VIT_SECTION_TEXR);
     im.mips = section(&im, VIT_SECTION_MIPS);
+    im.sides = section(&im, VIT_SECTION_SIDE);
+    im.cells = section(&im, VIT_SECTION_CELL);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;

@@ -15,7 +15,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 2", im->header->version = 2)                                                             \
+    X(header, newer_version, "version 3", im->header->version = 3)                                                             \
     X(header, too_few_sections, "11 sections", im->header->sections = 11)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -53,6 +53,7 @@
     X(META, huge_textures, "textures", im->scene->textures = 0xffffffff)                                                       \
     X(META, huge_mips, "mips", im->scene->mips = 0xffffffff)                                                                   \
     X(META, huge_texels, "texels", im->scene->texels = 0xffffffff)                                                             \
+    X(META, huge_cells, "cells", im->scene->cells = 0x1000000)                                                                 \
     X(META, huge_lights, "lights", im->scene->lights = 65)                                                                     \
     X(META, huge_paths, "paths", im->scene->paths = 0xffffffff)                                                                \
     X(META, huge_baked, "baked", im->scene->baked = 0xffffffff)                                                                \
@@ -89,6 +90,9 @@
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
     X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \
+    X(META, cells_without_their_effects, "27 cells contradict", EFFECTS(0, BIT(ZONES) | BIT(AREA)))                            \
+    X(META, zones_without_cells, "0 cells contradict", im->scene->cells = 0, EFFECTS(0, BIT(AREA)))                            \
+    X(META, areas_without_cells, "0 cells contradict", im->scene->cells = 0, EFFECTS(0, BIT(ZONES)))                           \
     X(META, two_texture_filters, "NEAREST and TRILINEAR", EFFECTS(BIT(NEAREST) | BIT(TRILINEAR), 0))                           \
     X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
     X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
@@ -97,7 +101,7 @@
       vit_pack_derive(im->scene, NULL))                                                                                        \
     X(META, textures_effect_without_textures, "without a texture", im->scene->textures = 0)                                    \
     X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, 0x7fffff80 | BIT(PHOTONS)),                     \
-      im->scene->paths = 0, vit_pack_derive(im->scene, NULL))                                                                  \
+      im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
     X(META, huge_max_list, "max_list", im->scene->max_list = 0xffffffff)                                                       \
@@ -111,6 +115,7 @@
     X(MATL, most_materials, "META counts 16777216 records", im->scene->materials = VIT_MATERIAL_INDEX + 1)                     \
     X(MIPS, one_mip_more, "META counts 4 records", ADD(mips, 1))                                                               \
     X(ATLS, most_texels, "META counts 2147483647 records", im->scene->texels = 0x7fffffff)                                     \
+    X(CELL, one_cell_less, "META counts 26 records", im->scene->cells--)                                                       \
     X(PHOT, one_photon_more, "META counts 5 records", ADD(baked, 1), ADD(photons, 1))
 
 #define RECORD_FAULTS(X)                                                                                                       \
@@ -171,10 +176,20 @@
     X(PHOT, inverse_is_infinite, "photon 0: position, direction or radius", im->photons[0].inv_radius2 = INFINITY)             \
     X(PHOT, negative_power, "power", im->photons[0].power[1] = -1)                                                             \
     X(PHOT, wrong_inverse, "inv_radius2", im->photons[1].inv_radius2 = 4.001f)                                                 \
-    X(PHOT, radius_of_0, "inv_radius2", im->photons[1].radius2 = 0)                                                            \
+    X(PHOT, radius_of_0, "inv_radius2", im->photons[1].radius2 = 0, im->photons[1].zone = 0)                                    \
     X(PHOT, direction_too_short, "unit vector", im->photons[0].direction[1] = -0.5f)                                           \
     X(PHOT, empty_slot_with_power, "photon 3: an empty slot has power", im->photons[3].power[2] = 1)                           \
-    X(PHOT, unknown_zone, "zone", im->photons[0].zone = 1)                                                                     \
+    X(PHOT, two_zones, "photon 0: zone", im->photons[0].zone = 3)                                                              \
+    X(PHOT, no_zone, "photon 1: zone", im->photons[1].zone = 0)                                                                \
+    X(PHOT, empty_slot_in_a_zone, "photon 3: zone", im->photons[3].zone = 1)                                                   \
+    X(PHOT, zone_without_its_effect, "photon 0: zone", EFFECTS(0, BIT(ZONES)))                                                 \
+    X(SIDE, no_parts, "side 23: 0 parts", im->sides[23] = 0)                                                                   \
+    X(SIDE, cell_beyond_the_last, "side 5: 1 parts from cell 27 on, of 27", im->sides[5] = 1u << VIT_SIDE_PARTS_SHIFT | 27)    \
+    X(SIDE, parts_beyond_the_last, "side 0: 5 parts from cell 3 on, of 27", im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 3)     \
+    X(SIDE, everything_at_most, "side 1: 255 parts from cell 16777215", im->sides[1] = 0xffffffff)                             \
+    X(CELL, first_area_of_0, "cell 26: an area is too small", im->cells[26].word &= ~511u)                                     \
+    X(CELL, second_area_too_small, "cell 0: an area", im->cells[0].word = 511u | 7u << 9 | 511u << 18)                         \
+    X(CELL, third_area_too_small, "cell 3: an area", im->cells[3].word = 511u | 511u << 9 | 7u << 18)                          \
     X(GOLD, padding_in_use, "frame 1: padding", im->golds[1].pad[0] = 1)
 
 #define TREE_FAULTS(X)                                                                                                         \
@@ -223,6 +238,10 @@
     X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
     X(emission, im->materials[0].emission[0] = FLT_MAX)                                                                        \
     X(mirrored_texture, im->textures[0].wrap_u = im->textures[0].wrap_v = VIT_WRAP_MIRROR)                                     \
+    X(parts_up_to_the_last_cell, im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 2)                                                \
+    X(a_cell_that_accepts_nothing, im->cells[0].accept = 0)                                                                    \
+    X(areas_without_zones, EFFECTS(0, BIT(ZONES)), clear_zones(im))                                                            \
+    X(zones_without_areas, EFFECTS(0, BIT(AREA)))                                                                              \
     X(dark_photon, im->photons[0].power[0] = 0)                                                                                \
     X(inverse_a_little_off, im->photons[0].inv_radius2 = 4.0003f)                                                              \
     X(boxes_larger_than_needed, im->nodes[0].lo0[0] = -100)                                                                    \
@@ -256,6 +275,11 @@ static void empty_box(float *lo, float *hi) {
         lo[k] = FLT_MAX;
         hi[k] = -FLT_MAX;
     }
+}
+
+static void clear_zones(image *im) {
+    for (int i = 0; i < FIXTURE_BAKED; i++)
+        im->photons[i].zone = 0;
 }
 
 static void swap_children(vit_bvh_node *n) {
