@@ -49,6 +49,7 @@ static const field quality_fields[] = {
     {"texture_filter", FIELD_WORD, offsetof(quality_group, q.texture_filter), SCENE_FILTERS},
     {"vertex_bits", FIELD_AMONG, offsetof(quality_group, q.vertex_bits), SCENE_VERTEX_BITS},
     {"normal_bits", FIELD_AMONG, offsetof(quality_group, q.normal_bits), SCENE_NORMAL_BITS},
+    {"sample_bits", FIELD_AMONG, offsetof(quality_group, q.sample_bits), SCENE_SAMPLE_BITS},
 };
 
 void reader_at(reader *r, const char *group, int index) {
@@ -212,7 +213,8 @@ static void set_defaults(scene *s) {
                                  .indirect_samples = 1,
                                  .texture_filter = FILTER_BILINEAR,
                                  .vertex_bits = 32,
-                                 .normal_bits = 16};
+                                 .normal_bits = 16,
+                                 .sample_bits = 32};
 }
 
 static vit_status copy_path(scene *s, const char *path, vit_text *why) {

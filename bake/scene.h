@@ -54,6 +54,7 @@ typedef struct scene_material {
 #define SCENE_INDIRECT_SAMPLES "1|4|16"
 #define SCENE_VERTEX_BITS "32|16"
 #define SCENE_NORMAL_BITS "16|8"
+#define SCENE_SAMPLE_BITS "32|16"
 #define SCENE_FILTERS "nearest|bilinear|trilinear"
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
 
@@ -74,6 +75,7 @@ typedef struct scene_quality {
     int texture_filter;        /* FILTER_* */
     int vertex_bits;           /* 32, or 16: positions on a grid of the scene's box (quantise.h) */
     int normal_bits;           /* 16, or 8: of each octahedral component of a vertex normal */
+    int sample_bits;           /* 32 or 16: of each coordinate of a view sample's position */
 } scene_quality;
 
 typedef struct scene {
