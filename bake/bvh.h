@@ -26,7 +26,7 @@ typedef struct geometry {
     float ray_offset;          /* see vit_scene.ray_offset: 2^-14 of ... see geometry.c */
 } geometry;
 
-/* Writes the records in leaf order; oct-encodes normals (error bound stated in geometry.c and tested). */
+/* Writes the records in leaf order; oct-encodes normals (error bound stated in octahedral.h and tested). */
 vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *why);
 void geometry_free(geometry *g);
 

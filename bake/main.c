@@ -64,9 +64,9 @@ static vit_status explain(const bake *b, vit_text *why) {
     plan_explain(&b->packed.plan, print_line, NULL);
     printf("\nscene\n  %u x %u, %u frames at %g a second\n", s->width, s->height, s->frames, (double)s->fps);
     printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n", s->triangles,
-           (unsigned long long)p->model.degenerate, (unsigned long long)p->model.not_finite, (unsigned long long)p->model.not_triangles, s->nodes,
-           p->bvh.depth);
-    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", p->reach.area, p->reach.dark_front + p->reach.dark_back);
+           (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite, (unsigned long long)b->packed.model->not_triangles, s->nodes,
+           b->packed.bvh->depth);
+    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.reach->area, b->packed.reach->dark_front + b->packed.reach->dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height, 100 * p->atlas.occupancy);
     if (s->effects & VIT_EFFECT_BIT_PHOTONS)
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,

@@ -63,7 +63,10 @@ static bool among(const char *name, const char *value, options *o, bool *known, 
     const struct {
         const char *name, *list, *wants;
         int *to;
-    } lists[] = {{"--indirect-samples", SCENE_INDIRECT_SAMPLES, "1, 4 or 16", &o->indirect_samples}};
+    } lists[] = {{"--indirect-samples", SCENE_INDIRECT_SAMPLES, "1, 4 or 16", &o->indirect_samples},
+                 {"--vertex-bits", SCENE_VERTEX_BITS, "32 or 16", &o->vertex_bits},
+                 {"--normal-bits", SCENE_NORMAL_BITS, "16 or 8", &o->normal_bits},
+                 {"--sample-bits", SCENE_SAMPLE_BITS, "32 or 16", &o->sample_bits}};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
         if (strcmp(name, lists[i].name) == 0) {
             *known = true;
@@ -179,6 +182,9 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     q->effective_area = o->effective_area >= 0 ? o->effective_area != 0 : q->effective_area;
     q->bounce_sequence = o->bounce_sequence >= 0 ? o->bounce_sequence != 0 : q->bounce_sequence;
     q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
+    q->vertex_bits = o->vertex_bits ? o->vertex_bits : q->vertex_bits;
+    q->normal_bits = o->normal_bits ? o->normal_bits : q->normal_bits;
+    q->sample_bits = o->sample_bits ? o->sample_bits : q->sample_bits;
     q->texture_filter = o->texture_filter ? fields_place(SCENE_FILTERS, o->texture_filter) : q->texture_filter;
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
         return usage(why, "--tile", "8, 16, 32 or 64");
@@ -209,6 +215,7 @@ void options_help(void) {
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
          "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
          "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
+         "  --vertex-bits 32|16  --normal-bits 16|8  --sample-bits 32|16\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

@@ -10,7 +10,7 @@ typedef struct options {
     unsigned threads;          /* 0: all cores */
     uint32_t device;
     /* Overrides of the scene file; 0, NULL or negative: none. */
-    int width, height, frames, photons, bounces, tile, indirect_samples;
+    int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits;
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
     double fit;                /* milliseconds a frame, 0: none */

@@ -24,22 +24,26 @@ vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
     return dot && strcmp(dot, ".cfg") == 0 ? scene_read(path, out, why) : scene_for_mesh(path, out, why);
 }
 
+/* BVH, triangles and dark sides of the model. */
+static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry *g, reach *r, vit_text *why) {
+    progress_stage(p->progress, "BVH");
+    vit_status status = bvh_build(m, p->threads, b, why);
+    if (status == VIT_OK)
+        status = geometry_pack(m, b, g, why);
+    if (status != VIT_OK)
+        return status;
+    progress_stage(p->progress, "sides that light can reach");
+    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, g, p->threads, step, p->progress, r, why);
+}
+
 vit_status pipeline_load(pipeline *p, vit_text *why) {
-    const uint32_t frames = (uint32_t)p->scene.frames;
     progress_stage(p->progress, "import");
     vit_status status = model_import(&p->scene, p->strict, warn, p->progress, &p->model, why);
     if (status == VIT_OK)
         status = tracks_evaluate(&p->scene, &p->model, &p->tracks, why);
     if (status != VIT_OK)
         return status;
-    progress_stage(p->progress, "BVH");
-    status = bvh_build(&p->model, p->threads, &p->bvh, why);
-    if (status == VIT_OK)
-        status = geometry_pack(&p->model, &p->bvh, &p->geometry, why);
-    if (status == VIT_OK) {
-        progress_stage(p->progress, "sides that light can reach");
-        status = reach_dark_sides(&p->model, &p->tracks, frames, &p->geometry, p->threads, step, p->progress, &p->reach, why);
-    }
+    status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
     if (status == VIT_OK) {
         progress_stage(p->progress, "atlas");
         status = atlas_pack(&p->model, &p->atlas, why);
@@ -60,6 +64,25 @@ pipeline_choice pipeline_default(const pipeline *p) {
     return (pipeline_choice){.quality = p->scene.quality, .width = p->scene.width, .height = p->scene.height};
 }
 
+/* The pipeline's shape, or one of its own where the quality asks for fewer bits. */
+static vit_status choose_shape(const pipeline *p, const scene_quality *q, pipeline_packed *out, vit_text *why) {
+    out->model = &p->model;
+    out->bvh = &p->bvh;
+    out->geometry = &p->geometry;
+    out->reach = &p->reach;
+    if (q->vertex_bits != 16 && q->normal_bits != 8)
+        return VIT_OK;
+    pipeline_shape *c = &out->coarse;
+    const vit_status status = model_quantise(&p->model, q->vertex_bits, q->normal_bits, &c->model, why);
+    if (status != VIT_OK)
+        return status;
+    out->model = &c->model;
+    out->bvh = &c->bvh;
+    out->geometry = &c->geometry;
+    out->reach = &c->reach;
+    return make_shape(p, &c->model, &c->bvh, &c->geometry, &c->reach, why);
+}
+
 static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_text *why) {
     photons_light *lights = calloc(out->tracks.light_count + 1u, sizeof *lights);
     uint32_t count = 0;
@@ -71,12 +94,12 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
             lights[count++] = (photons_light){out->tracks.lights[i], out->plan.baked_paths[i]};
     if (count > 0) {
         progress_stage(p->progress, "photons of still lights");
-        photons_input in = {.triangles = p->geometry.triangles,
-                            .attributes = p->geometry.attributes,
-                            .triangle_count = p->model.triangles,
+        photons_input in = {.triangles = out->geometry->triangles,
+                            .attributes = out->geometry->attributes,
+                            .triangle_count = out->model->triangles,
                             .materials = out->plan.materials,
                             .atlas = &p->atlas,
-                            .ray_offset = p->geometry.ray_offset,
+                            .ray_offset = out->geometry->ray_offset,
                             .box_pad = out->plan.scene.box_pad,
                             .effects = out->plan.scene.effects,
                             .first_path = out->plan.scene.paths,
@@ -134,9 +157,9 @@ static void point_sections(const pipeline *p, pipeline_packed *out) {
     out->sections = (pack_sections){.data = {[VIT_SECTION_META] = &out->plan.scene,
                                              [VIT_SECTION_CAMS] = out->tracks.cameras,
                                              [VIT_SECTION_LITE] = out->tracks.lights,
-                                             [VIT_SECTION_GEOM] = p->geometry.triangles,
-                                             [VIT_SECTION_ATTR] = p->geometry.attributes,
-                                             [VIT_SECTION_BVHN] = p->bvh.nodes,
+                                             [VIT_SECTION_GEOM] = out->geometry->triangles,
+                                             [VIT_SECTION_ATTR] = out->geometry->attributes,
+                                             [VIT_SECTION_BVHN] = out->bvh->nodes,
                                              [VIT_SECTION_MATL] = out->plan.materials,
                                              [VIT_SECTION_TEXR] = p->atlas.textures,
                                              [VIT_SECTION_MIPS] = p->atlas.mips,
@@ -155,8 +178,8 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
     progress_stage(p->progress, "zones and areas");
-    const zones_input in = {.geometry = &p->geometry,
-                            .triangles = p->model.triangles,
+    const zones_input in = {.geometry = out->geometry,
+                            .triangles = out->model->triangles,
                             .materials = out->plan.materials,
                             .atlas = &p->atlas,
                             .tracks = &out->tracks,
@@ -208,7 +231,9 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
     s.height = choice->height;
     vit_status status = tracks_evaluate(&s, &p->model, &out->tracks, why);
     if (status == VIT_OK)
-        status = plan_make(&s, &p->model, &out->tracks, &p->atlas, &p->bvh, &p->geometry, &p->reach, &out->plan, why);
+        status = choose_shape(p, &choice->quality, out, why);
+    if (status == VIT_OK)
+        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &out->plan, why);
     if (status == VIT_OK)
         status = trace_photons(p, out, why);
     if (status == VIT_OK)
@@ -225,6 +250,9 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->photons);
     cells_free(&packed->cells);
     plan_free(&packed->plan);
+    geometry_free(&packed->coarse.geometry);
+    bvh_free(&packed->coarse.bvh);
+    model_quantise_free(&packed->coarse.model);
     tracks_free(&packed->tracks);
     memset(packed, 0, sizeof *packed);
 }

@@ -8,6 +8,7 @@
 #include "pack_write.h"
 #include "planner.h"
 #include "progress.h"
+#include "quantise.h"
 #include "reach.h"
 #include "tracks.h"
 #include "zones.h"
@@ -35,8 +36,21 @@ typedef struct pipeline_choice {
     uint32_t frame_count;
 } pipeline_choice;
 
+/* What follows from the triangles alone. */
+typedef struct pipeline_shape {
+    model model;
+    bvh bvh;
+    geometry geometry;
+    reach reach;
+} pipeline_shape;
+
 /* A pack and what it was made of. */
 typedef struct pipeline_packed {
+    pipeline_shape coarse; /* with vertices in fewer bits; else empty */
+    const model *model;    /* the shape that was packed: the pipeline's, or `coarse` */
+    const bvh *bvh;
+    const geometry *geometry;
+    const reach *reach;
     plan plan;
     tracks tracks; /* of the frames that were chosen */
     cells cells;      /* zones and effective areas; none without them */

@@ -121,6 +121,17 @@ static float slice_scale(const scene *s, const tracks *t) {
     return (float)(1.0 / log2(1.0 + 2.0 * t->tan_half_fov / rows));
 }
 
+/* The grid of small view samples: cubes over the box of the model, with room for what rays leave surfaces by. */
+static void plan_grid(const model *m, vit_scene *c) {
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, m->hi[k] - m->lo[k]);
+    const double margin = 4.0 * (double)c->ray_offset + extent * 0x1p-14, step = (extent + 2.0 * margin) / 65535.0;
+    for (int k = 0; k < 3; k++)
+        c->grid_low[k] = (float)(m->lo[k] - margin);
+    c->grid_step = (float)step;
+}
+
 /* Area that light can reach, m2 (a side counts for itself). */
 static double lit_area(const reach *r) {
     double lit = r->area - r->dark_front - r->dark_back;
@@ -165,6 +176,10 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         return status;
     }
     c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
+    if (s->quality.sample_bits == 16) {
+        c->effects |= VIT_EFFECT_BIT_SMALL_SAMPLES;
+        plan_grid(m, c);
+    }
     if (r->dark_sides > 0)
         c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
     if (c->effects & VIT_EFFECT_BIT_PHOTONS) {

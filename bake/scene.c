@@ -47,6 +47,9 @@ static const field quality_fields[] = {
     {"bounce_sequence", FIELD_SWITCH, offsetof(quality_group, q.bounce_sequence), NULL},
     {"indirect_samples", FIELD_AMONG, offsetof(quality_group, q.indirect_samples), SCENE_INDIRECT_SAMPLES},
     {"texture_filter", FIELD_WORD, offsetof(quality_group, q.texture_filter), SCENE_FILTERS},
+    {"vertex_bits", FIELD_AMONG, offsetof(quality_group, q.vertex_bits), SCENE_VERTEX_BITS},
+    {"normal_bits", FIELD_AMONG, offsetof(quality_group, q.normal_bits), SCENE_NORMAL_BITS},
+    {"sample_bits", FIELD_AMONG, offsetof(quality_group, q.sample_bits), SCENE_SAMPLE_BITS},
 };
 
 void reader_at(reader *r, const char *group, int index) {
@@ -204,7 +207,14 @@ static bool read_top(reader *r, const config_setting_t *root) {
 
 static void set_defaults(scene *s) {
     *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0};
-    s->quality = (scene_quality){.photons = 17000, .bounces = 4, .tile = 32, .indirect_samples = 1, .texture_filter = FILTER_BILINEAR};
+    s->quality = (scene_quality){.photons = 17000,
+                                 .bounces = 4,
+                                 .tile = 32,
+                                 .indirect_samples = 1,
+                                 .texture_filter = FILTER_BILINEAR,
+                                 .vertex_bits = 32,
+                                 .normal_bits = 16,
+                                 .sample_bits = 32};
 }
 
 static vit_status copy_path(scene *s, const char *path, vit_text *why) {

@@ -52,6 +52,9 @@ typedef struct scene_material {
 
 /* Values of settings that take one of a few. */
 #define SCENE_INDIRECT_SAMPLES "1|4|16"
+#define SCENE_VERTEX_BITS "32|16"
+#define SCENE_NORMAL_BITS "16|8"
+#define SCENE_SAMPLE_BITS "32|16"
 #define SCENE_FILTERS "nearest|bilinear|trilinear"
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
 
@@ -70,6 +73,9 @@ typedef struct scene_quality {
     bool bounce_sequence;      /* reflections follow a low-discrepancy sequence */
     int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
     int texture_filter;        /* FILTER_* */
+    int vertex_bits;           /* 32, or 16: positions on a grid of the scene's box (quantise.h) */
+    int normal_bits;           /* 16, or 8: of each octahedral component of a vertex normal */
+    int sample_bits;           /* 32 or 16: of each coordinate of a view sample's position */
 } scene_quality;
 
 typedef struct scene {

@@ -58,7 +58,7 @@ static inline void mark_key(global const vit_scene *scene, volatile global uint 
 
 /* Keys of the samples, and their existence bits. A work-item takes `run` samples in a row. */
 kernel void cluster_keys(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint run, global const uint *hit_triangle,
-                         global const float *position, global const uint *normal, global const uint *albedo, volatile global uint *masks,
+                         global const sample_coordinate *position, global const uint *normal, global const uint *albedo, volatile global uint *masks,
                          global uint *keys, volatile global uint *counters)
 {
     uint n = scene->samples, begin = (uint)get_global_id(0) * run, end = min(begin + run, n), per_tile = scene->tile * scene->tile;
@@ -75,7 +75,7 @@ kernel void cluster_keys(global const vit_scene *scene, global const vit_camera 
 #endif
         li key = (li)(int)VIT_NONE;
         if (l_any(valid)) {
-            lv3 p = lv3_load_planes(position, n, first);
+            lv3 p = sample_position(scene, position, first);
             li slice = cluster_slice(scene, lv3_dot(lv3_sub(p, eye), forward));
             nearest = min(nearest, l_sel_i(valid, slice, nearest));
             farthest = max(farthest, l_sel_i(valid, slice, farthest));
@@ -206,7 +206,7 @@ static inline void widen(volatile global int *bounds, uint max_nodes, uint node,
 /* Clusters' boxes of positions (planes 0..5 of bounds: lo, hi) and of normals (6..11). The box of normals stands for the
  * normal cone: a photon that comes from behind for each corner of it comes from behind for every sample. With zones, plane 12 has
  * those that any sample accepts. Minima and maxima of integers that order as the floats do, and bits: no order of execution shows. */
-kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint run, global const uint *keys, global const float *position,
+kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint run, global const uint *keys, global const sample_coordinate *position,
                            global const uint *normal, global const uint *accept, global const uint *masks, global const uint *prefix,
                            volatile global int *bounds, volatile global uint *counters)
 {
@@ -219,7 +219,7 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
         li rest = L_GE(key, (li)0);
         if (!l_any(rest))
             continue;
-        lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+        lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
         li q[6] = {L_AS_INT(p.x), L_AS_INT(p.y), L_AS_INT(p.z), L_AS_INT(s.x), L_AS_INT(s.y), L_AS_INT(s.z)};
         for (int k = 0; k < 6; k++)
             q[k] ^= (q[k] >> 31) & 0x7fffffff;

@@ -29,7 +29,7 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
 }
 
 kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
-                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
+                         global const sample_coordinate *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -37,7 +37,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), (li)(int)VIT_NONE);
     if (!l_any(hit))
         return;
-    lv3 p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+    lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
     lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {

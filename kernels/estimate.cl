@@ -15,10 +15,10 @@ typedef struct estimate_sample {
 #endif
 } estimate_sample;
 
-static inline estimate_sample estimate_load(uint n, uint first, global const float *position, global const uint *normal, ESTIMATE_BAKED)
+static inline estimate_sample estimate_load(global const vit_scene *scene, uint first, global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED)
 {
     estimate_sample r;
-    r.p = lv3_load_planes(position, n, first);
+    r.p = sample_position(scene, position, first);
     r.s = l_decode_normal(L_LOAD(normal + first));
 #if VIT_EFFECT_ZONES
     r.accept = L_AS_INT(L_LOAD(accept + first));
@@ -30,11 +30,10 @@ static inline estimate_sample estimate_load(uint n, uint first, global const flo
 }
 
 /* The samples of these numbers. */
-static inline estimate_sample estimate_load_at(uint n, li at, global const float *position, global const uint *normal, ESTIMATE_BAKED)
+static inline estimate_sample estimate_load_at(global const vit_scene *scene, li at, global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED)
 {
     estimate_sample r;
-    r.p = lv3_set(L_GATHER(lf, VIT_PLANE(position, 0, n), at), L_GATHER(lf, VIT_PLANE(position, 1, n), at),
-                  L_GATHER(lf, VIT_PLANE(position, 2, n), at));
+    r.p = sample_position_of(scene, position, at);
     r.s = l_decode_normal(l_gather_u(normal, at));
 #if VIT_EFFECT_ZONES
     r.accept = L_AS_INT(l_gather_u(accept, at));
@@ -103,7 +102,7 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sa
 }
 
 #if !VIT_EFFECT_SPARSE
-kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
+kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const sample_coordinate *position, global const uint *normal,
                           ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
@@ -113,7 +112,7 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     WORK_BEGIN
     if (l_any(L_GE(key, (li)0))) {
-        estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
+        estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
         total = estimate_gather(ESTIMATE_ARGUMENTS, key, &sample WORK_PASS);
     }
     lv3_store_planes(total, indirect, n, first);
@@ -236,7 +235,7 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample
 #endif
 
 #if !VIT_EFFECT_SPARSE
-kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
+kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const sample_coordinate *position, global const uint *normal,
                              ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
@@ -247,7 +246,7 @@ kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global 
     l_pixel(scene, first, &x, &y);
     WORK_BEGIN
     if (l_any(L_GE(key, (li)0))) {
-        estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
+        estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
         total = bucket_gather(BUCKET_ARGUMENTS, key, &sample, x, y WORK_PASS);
     }
     lv3_store_planes(total, indirect, n, first);

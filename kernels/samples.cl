@@ -1,6 +1,6 @@
 /* Pass 2: view samples, what each pixel's ray found. */
 kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
-                    global const float *hit_distance, global const uint *sides, global const uint *cells, global float *position, global uint *normal, global uint *albedo,
+                    global const float *hit_distance, global const uint *sides, global const uint *cells, global sample_coordinate *position, global uint *normal, global uint *albedo,
                     global float *direct, global uint *accept, global float *inverse_area WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
@@ -21,7 +21,7 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
         surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, (lf)sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
         WORK_LANES(texture_fetches, s.textured);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
-        lv3_store_planes(lv3_sel(hit, s.position, lv3_set((lf)0, (lf)0, (lf)0)), position, n, first);
+        sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), (lu)0), normal + first);
         L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, (lu)VIT_SAMPLE_DARK, (lu)0), (lu)0), albedo + first);
         light = lv3_sel(hit, s.emission, light);
@@ -36,7 +36,7 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
 #endif
     } else {
         lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);
-        lv3_store_planes(zero, position, n, first);
+        sample_store_position(scene, zero, zero, (li)0, position, first);
         L_STORE((lu)0, normal + first);
         L_STORE((lu)0, albedo + first);
 #if VIT_EFFECT_ZONES

@@ -34,7 +34,7 @@ static inline li sparse_sample(li i)
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
         global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,        \
         global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,        \
-        global const float *position, global const uint *normal, ESTIMATE_BAKED
+        global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED
 #define SPARSE_ARGUMENTS                                                                                                         \
     scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal, accept, inverse_area
 
@@ -43,7 +43,7 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
 {
     uint n = scene->samples;
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
-    estimate_sample found = estimate_load_at(n, sample, position, normal, accept, inverse_area);
+    estimate_sample found = estimate_load_at(scene, sample, position, normal, accept, inverse_area);
     lv3 p = found.p, s = found.s;
     li keyed = l_sel_i(L_LT(L_INDEX, (li)(int)used), (li)key, (li)-1);
 #if VIT_EFFECT_LIST
@@ -162,7 +162,7 @@ static inline global const float *sparse_block(global const vit_scene *scene, gl
 /* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
  * and no light yet. */
 kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
-                        global const float *position, global const uint *normal, global const float *coarse, global float *indirect,
+                        global const sample_coordinate *position, global const uint *normal, global const float *coarse, global float *indirect,
                         global uint *flags)
 {
     uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
@@ -178,7 +178,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), (li)0), pixel = (int)at + L_INDEX;
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = lv3_load_planes(position, n, first), s = l_decode_normal(L_LOAD(normal + first));
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, (lf)1e-30f);
         lf weights = (lf)0, x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)

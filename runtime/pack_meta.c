@@ -30,6 +30,7 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 
 static vit_status check_floats(const vit_scene *s, vit_text *why) {
     const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
+    const bool small = s->effects & VIT_EFFECT_BIT_SMALL_SAMPLES;
     const struct {
         const char *name;
         float value, least, most;
@@ -41,6 +42,10 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"box_pad", s->box_pad, 0.0f, FLT_MAX},
         {"slice_near", s->slice_near, least, FLT_MAX},
         {"slice_scale", s->slice_scale, least, FLT_MAX},
+        {"grid_low x", s->grid_low[0], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
+        {"grid_low y", s->grid_low[1], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
+        {"grid_low z", s->grid_low[2], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
+        {"grid_step", s->grid_step, small ? least : 0.0f, small ? FLT_MAX / 65536 : 0.0f},
         {"background red", s->background[0], 0.0f, FLT_MAX},
         {"background green", s->background[1], 0.0f, FLT_MAX},
         {"background blue", s->background[2], 0.0f, FLT_MAX},
@@ -112,8 +117,6 @@ static vit_status check_bounds(const vit_scene *s, vit_text *why) {
         return pack_refuse(why, "section META: max_list must be in 0..%u, got %u", MAX_LIST, s->max_list);
     if (s->slice_first > MAX_SLICE)
         return pack_refuse(why, "section META: slice_first must be in 0..%u, got %u", MAX_SLICE, s->slice_first);
-    if (!all_zero(s->reserved, sizeof s->reserved / sizeof s->reserved[0]))
-        return pack_refuse(why, "section META: a reserved field is not 0");
     return VIT_OK;
 }
 

@@ -31,6 +31,9 @@ typedef struct vit_limits {
 /* Samples of which every one of so many is estimated: kernels/sparse.cl. */
 #define VIT_COARSE(s, l) ((uint64_t)(s)->samples / ((l)->effects & ON(SPARSE_16) ? 16 : 4))
 
+/* Bytes of a view sample's position. */
+#define VIT_POSITION(l) ((l)->effects & ON(SMALL_SAMPLES) ? 6u : 12u)
+
 /* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits l). */
 #define VIT_BUFFERS(X)                                                                                                           \
     X(scene, ALWAYS, META, sizeof(vit_scene))                                                                                    \
@@ -47,7 +50,7 @@ typedef struct vit_limits {
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                            \
     X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
     X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
-    X(position, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
+    X(position, ALWAYS, NONE, (uint64_t)s->samples * VIT_POSITION(l))                                                                         \
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \

@@ -10,24 +10,24 @@
  * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
 #define PASS_BYTES(X)                                                                                                          \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + 12 + 4 + 4 + 12 + z->baked) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
-    X(direct_light, (4 + 12 + 4 + 4 + 12 + 12) * z->samples + z->lights)                                                       \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
+    X(direct_light, (4 + z->position + 4 + 4 + 12 + 12) * z->samples + z->lights)                                                       \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                                                         \
-    X(cluster_keys, (4 + 12 + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
+    X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
     X(number_nodes, (4 + 4) * z->masks)                                                                                        \
     X(make_nodes, (4 + 4) * z->masks + (4 + 4 + BOX) * z->nodes)                                                               \
-    X(cluster_bounds, (4 + 12 + 4 + z->zones) * z->samples + BOX * (z->nodes - z->inner))                                                 \
+    X(cluster_bounds, (4 + z->position + 4 + z->zones) * z->samples + BOX * (z->nodes - z->inner))                                                 \
     X(node_bounds, (4 + 4 + BOX) * z->inner + BOX * (z->nodes - 1))                                                            \
     X(splat_count, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4) * z->listed)                                                  \
     X(splat_place, (4 + 4 + 4) * z->listed)                                                                                    \
     X(splat_write, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + 4) * z->listed + 4 * z->entries)                             \
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
-    X(estimate_list, (4 + 12 + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
-    X(estimate_buckets, (4 + 12 + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
-    X(estimate_sparse, (4 + 12 + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
-    X(interpolate, (4 + 12 + 4 + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
+    X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
+    X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
+    X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
+    X(interpolate, (4 + z->position + 4 + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
@@ -44,6 +44,7 @@ typedef struct sizes {
     uint64_t nodes, inner, listed; /* nodes, of those that there is room for: all, with children, with a list but the root */
     uint64_t entries;              /* list entries kept */
     uint64_t lights, bucket;       /* bytes: of a frame's lights, of a cluster's buckets */
+    uint64_t position;             /* bytes: of a sample's position */
     uint64_t coarse;               /* samples of the coarse grid */
     uint64_t evaluation;           /* bytes: of an evaluation; of a bucket with its part of the box */
     uint64_t corner;               /* bytes of a cluster's box that each of its eight octants takes, smoothed */
@@ -75,6 +76,7 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
                .traced = s->photons - s->baked,
                .lights = s->lights * sizeof(vit_light),
                .bucket = VIT_BUCKETS_OF(l) * 16,
+               .position = VIT_POSITION(l),
                .coarse = l->effects & ON(SPARSE) ? VIT_COARSE(s, l) : 0,
                .nodes = 1, /* before the first frame there is the root */
                .shown = shown_bytes(l),

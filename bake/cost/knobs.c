@@ -62,6 +62,12 @@ static const knob knobs[] = {
      .values = {{"nearest", "texture_filter = \"nearest\""},
                 {"trilinear", "texture_filter = \"trilinear\""},
                 {"bilinear", "texture_filter = \"bilinear\""}}},
+    {"vertex_bits", "bits of each coordinate of a vertex", false, KNOB_TEXTS,
+     .values = {{"16", "vertex_bits = 16"}, {"32", "vertex_bits = 32"}}},
+    {"normal_bits", "bits of each of the two components of a vertex normal", false, KNOB_TEXTS,
+     .values = {{"8", "normal_bits = 8"}, {"16", "normal_bits = 16"}}},
+    {"sample_bits", "bits of each coordinate of a view sample", false, KNOB_TEXTS,
+     .values = {{"16", "sample_bits = 16"}, {"32", "sample_bits = 32"}}},
     {"size", "output size, shown as large as the scene's", false, KNOB_SIZE, .numbers = {0.5, 0.75}},
     {"lanes", "samples a work-item: the same bits, another time", false, KNOB_LANES, .numbers = {1, 8, 16}},
 };

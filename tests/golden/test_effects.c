@@ -178,6 +178,13 @@ static void a_texture_filter_takes_no_buffer_and_no_pass(void **state) {
     assert_true(requirements("trilinear").effects & VIT_EFFECT_BIT_TRILINEAR);
 }
 
+static void small_samples_halve_the_positions_and_nothing_else(void **state) {
+    (void)state;
+    const vit_requirements small = requirements("small"), plain = requirements("list");
+    only_adds("small", "list", " ", " ");
+    assert_int_equal(bytes_of(&small, "position") * 2, bytes_of(&plain, "position"));
+}
+
 static void still_lights_have_no_pass_that_traces_photons(void **state) {
     (void)state;
     only_adds("room", "still", " ", " photon_paths ");
@@ -247,7 +254,7 @@ static void open_and_play_one(const char *name, vit_view view) {
 static void what_is_made_and_compiled_is_what_was_required_and_no_more(void **state) {
     (void)state;
     static const char *const packs[] = {"list",  "buckets", "raw",    "dark",        "room",
-                                        "still", "lamp",    "sparse", "sparse-room", "sparse-buckets"};
+                                        "still", "lamp",    "sparse", "sparse-room", "sparse-buckets", "small", "small-sparse"};
     for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
         open_and_play_one(packs[i], VIT_VIEW_final);
 }
@@ -267,6 +274,7 @@ int main(void) {
         cmocka_unit_test(a_flattened_kernel_takes_no_buffer_and_no_pass),
         cmocka_unit_test(light_at_fewer_samples_takes_the_place_of_the_estimate),
         cmocka_unit_test(a_texture_filter_takes_no_buffer_and_no_pass),
+        cmocka_unit_test(small_samples_halve_the_positions_and_nothing_else),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),

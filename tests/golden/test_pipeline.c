@@ -60,11 +60,15 @@ static void a_pack_does_not_depend_on_those_made_before(void **state) {
     pipeline_choice buckets = plain;
     buckets.quality.buckets = true;
     buckets.quality.photons = 512;
+    buckets.quality.vertex_bits = 16; /* a shape of its own */
+    buckets.quality.normal_bits = 8;
     pack(&l, &plain, &first);
     pack(&l, &buckets, &other);
     pack(&l, &plain, &again);
     assert_int_equal(first.size, again.size);
     assert_memory_equal(first.bytes, again.bytes, first.size);
+    assert_memory_not_equal(other.geometry->triangles, first.geometry->triangles,
+                            first.model->triangles * sizeof(vit_triangle));
     assert_true(other.size != first.size || memcmp(other.bytes, first.bytes, first.size) != 0);
     pipeline_packed_free(&first);
     pipeline_packed_free(&other);

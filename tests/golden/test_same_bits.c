@@ -121,6 +121,8 @@ ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets", together)
 ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", together)
 ALIKE(nearest_texels_hash_the_same, "nearest", few)
 ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
+ALIKE(small_samples_hash_the_same, "small", together)
+ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse", few)
 ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -155,6 +157,7 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("buckets"), "--trace", together, COUNT(together));
     assert_all_alike(test_pack("normal-keys"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("room"), "--trace", together, COUNT(together));
+    assert_all_alike(test_pack("small-sparse"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("sparse-room"), "--trace", together, COUNT(together));
     assert_all_alike(test_pack("sparse-buckets"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
@@ -194,6 +197,8 @@ int main(void) {
         cmocka_unit_test(one_sample_in_16_and_small_tiles_hash_the_same),
         cmocka_unit_test(nearest_texels_hash_the_same),
         cmocka_unit_test(trilinear_textures_hash_the_same),
+        cmocka_unit_test(small_samples_hash_the_same),
+        cmocka_unit_test(small_samples_with_interpolated_light_hash_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),

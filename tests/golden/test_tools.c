@@ -79,6 +79,8 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses(TEST_SCENES "/furnace.cfg --tile 24" OUT, VIT_USAGE, "--tile");
     bake_refuses(TEST_SCENES "/furnace.cfg --indirect-samples 2" OUT, VIT_USAGE, "--indirect-samples");
     bake_refuses(TEST_SCENES "/furnace.cfg --texture-filter cubic" OUT, VIT_USAGE, "--texture-filter");
+    bake_refuses(TEST_SCENES "/furnace.cfg --vertex-bits 8" OUT, VIT_USAGE, "--vertex-bits");
+    bake_refuses(TEST_SCENES "/furnace.cfg --sample-bits 8" OUT, VIT_USAGE, "--sample-bits");
 }
 
 static void the_baker_names_a_file_that_is_missing(void **state) {

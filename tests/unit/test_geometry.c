@@ -1,4 +1,4 @@
-/* Triangle and attribute records. The decoder here is written anew from the formula in geometry.c, in float, as the kernels do
+/* Triangle and attribute records. The decoder here is written anew from the formula in octahedral.h, in float, as the kernels do
  * it; the error bound of the normals is measured over directions that include the octahedron's edges and corners, where
  * encoders err. */
 #include "bvh.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define NORMAL_ERROR 5e-5 /* radians; geometry.c states it */
+#define NORMAL_ERROR 5e-5 /* radians; octahedral.h states it */
 
 static void decode(vit_u32 word, float n[3]) {
     const float x = (float)(int16_t)(word & 0xffffu) / 32767.0f, y = (float)(int16_t)(word >> 16) / 32767.0f;

@@ -94,6 +94,9 @@
     X(META, zones_without_cells, "0 cells contradict", im->scene->cells = 0, EFFECTS(0, BIT(AREA)))                            \
     X(META, areas_without_cells, "0 cells contradict", im->scene->cells = 0, EFFECTS(0, BIT(ZONES)))                           \
     X(META, two_texture_filters, "NEAREST and TRILINEAR", EFFECTS(BIT(NEAREST) | BIT(TRILINEAR), 0))                           \
+    X(META, a_grid_without_small_samples, "grid_step", im->scene->grid_step = 0.5f)                                            \
+    X(META, small_samples_without_a_grid, "grid_step", EFFECTS(BIT(SMALL_SAMPLES), 0))                                         \
+    X(META, a_grid_that_is_nowhere, "grid_low y", (EFFECTS(BIT(SMALL_SAMPLES), 0), im->scene->grid_low[1] = NAN))              \
     X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
     X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
@@ -106,7 +109,6 @@
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
     X(META, huge_max_list, "max_list", im->scene->max_list = 0xffffffff)                                                       \
     X(META, huge_slice_first, "slice_first", im->scene->slice_first = 0xffffffff)                                              \
-    X(META, reserved_in_use, "reserved", im->scene->reserved[3] = 1)                                                           \
     X(CAMS, one_frame_more, "META counts 3 records", ADD(frames, 1))                                                           \
     X(LITE, one_light_more, "META counts 6 records", ADD(lights, 1))                                                           \
     X(GEOM, one_triangle_more, "META counts 13 records", ADD(triangles, 1))                                                    \

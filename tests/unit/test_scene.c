@@ -84,7 +84,7 @@ static const char full[] =
     "  { name = \"wall\"; texture = \"\"; } );\n"
     "quality: { photons = 1000; bounces = 7; radius = 0.5; tile = 16; estimate = \"buckets\"; smoothing = \"raw\";\n"
     "  kernel = \"flattened\"; flatten = 9.0; normal_keys = true; indirect_samples = 4;\n"
-    "  texture_filter = \"trilinear\"; };\n";
+    "  texture_filter = \"trilinear\"; vertex_bits = 16; normal_bits = 8; sample_bits = 16; };\n";
 
 static void every_setting_of_output_and_quality_is_read(void **state) {
     scene s;
@@ -97,6 +97,7 @@ static void every_setting_of_output_and_quality_is_read(void **state) {
     assert_true(s.quality.photons == 1000 && s.quality.bounces == 7 && s.quality.radius == 0.5 && s.quality.tile == 16);
     assert_true(s.quality.buckets && s.quality.raw && s.quality.flatten == 9.0 && s.quality.normal_keys);
     assert_true(s.quality.indirect_samples == 4 && s.quality.texture_filter == FILTER_TRILINEAR);
+    assert_true(s.quality.vertex_bits == 16 && s.quality.normal_bits == 8 && s.quality.sample_bits == 16);
     assert_false(s.automatic);
     scene_free(&s);
 }
@@ -186,6 +187,7 @@ static void what_is_left_out_has_its_default(void **state) {
     assert_true(s.quality.photons == 17000 && s.quality.bounces == 4 && s.quality.radius == 0.0 && s.quality.tile == 32);
     assert_true(!s.quality.buckets && !s.quality.raw && s.quality.flatten == 0.0 && !s.quality.normal_keys);
     assert_true(s.quality.indirect_samples == 1 && s.quality.texture_filter == FILTER_BILINEAR);
+    assert_true(s.quality.vertex_bits == 32 && s.quality.normal_bits == 16 && s.quality.sample_bits == 32);
     scene_free(&s);
 }
 
@@ -313,6 +315,9 @@ REFUSES(an_unknown_filter_is_refused, 3, "'texture_filter' must be \"nearest\", 
         GOOD "quality: { texture_filter = \"cubic\"; };\n")
 REFUSES(a_filter_that_is_a_number_is_refused, 3, "'texture_filter' must be \"nearest\"",
         GOOD "quality: { texture_filter = 2; };\n")
+REFUSES(vertices_of_17_bits_are_refused, 3, "'vertex_bits' must be 32 or 16, got 17", GOOD "quality: { vertex_bits = 17; };\n")
+REFUSES(samples_of_8_bits_are_refused, 3, "'sample_bits' must be 32 or 16, got 8", GOOD "quality: { sample_bits = 8; };\n")
+REFUSES(normals_of_a_word_are_refused, 3, "'normal_bits' must be 16 or 8", GOOD "quality: { normal_bits = \"few\"; };\n")
 REFUSES(one_sample_in_none_is_refused, 3, "'indirect_samples'", GOOD "quality: { indirect_samples = 0; };\n")
 REFUSES(a_radius_that_is_a_word_is_refused, 3, "or \"auto\"", GOOD "quality: { radius = \"big\"; };\n")
 REFUSES(raw_lists_are_refused, 3, "needs estimate \"buckets\"", GOOD "quality: { smoothing = \"raw\"; };\n")
@@ -479,6 +484,9 @@ int main(void) {
         T(a_tile_of_24_pixels_is_refused),
         T(one_sample_in_2_is_refused),
         T(one_sample_in_none_is_refused),
+        T(vertices_of_17_bits_are_refused),
+        T(samples_of_8_bits_are_refused),
+        T(normals_of_a_word_are_refused),
         T(an_unknown_filter_is_refused),
         T(a_filter_that_is_a_number_is_refused),
         T(a_radius_that_is_a_word_is_refused),
