@@ -19,7 +19,7 @@ static int scaled(int edge, double scale) {
 
 vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why) {
     pipeline *p = s->in->pipeline;
-    const knob_setting *k = &s->knobs[i];
+    const knob_setting *k = &s->knobs.settings[i];
     sweep_pack *pack = &s->packs[i];
     if (pack->bytes)
         return VIT_OK;
@@ -52,7 +52,7 @@ static vit_open_info how(const sweep *s, uint32_t i) {
     return (vit_open_info){.pack = s->packs[i].bytes,
                            .pack_size = s->packs[i].size,
                            .device = s->in->pipeline->device,
-                           .lanes = s->knobs[i].lanes};
+                           .lanes = s->knobs.settings[i].lanes};
 }
 
 static void note_work(cost_results *r, cost_setting *c, const vit_statistics *t) {
@@ -69,9 +69,9 @@ static void note_work(cost_results *r, cost_setting *c, const vit_statistics *t)
 /* What must have the default's bits has them. */
 static vit_status check_same(const sweep *s, uint32_t i, vit_text *why) {
     const size_t bytes = 3 * s->points * sizeof(float);
-    if (s->knobs[i].lanes == 0 || memcmp(s->out->settings[i].image, s->out->settings[0].image, bytes) == 0)
+    if (s->knobs.settings[i].lanes == 0 || memcmp(s->out->settings[i].image, s->out->settings[0].image, bytes) == 0)
         return VIT_OK;
-    return fail(VIT_MISMATCH, why, s->knobs[i].name, "its frame has other bits than the default's");
+    return fail(VIT_MISMATCH, why, s->knobs.settings[i].name, "its frame has other bits than the default's");
 }
 
 static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
@@ -103,14 +103,13 @@ static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
     return check_same(s, i, why);
 }
 
-vit_status sweep_pictures(sweep *s, vit_text *why) {
+vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why) {
     vit_status status = VIT_OK;
-    progress_stage(s->progress, "settings: packs, pictures");
-    for (uint32_t i = 0; i < s->out->count && status == VIT_OK; i++) {
+    for (uint32_t i = first; i < s->out->count && status == VIT_OK; i++) {
         status = sweep_cancelled(s, why) ? VIT_FAILED : picture(s, i, why);
         if (s->kept > s->in->memory)
             sweep_drop_pack(s, i);
-        progress_step(s->progress, (i + 1.0) / s->out->count);
+        progress_step(s->progress, (i + 1.0) / s->knobs.most);
     }
     return status;
 }

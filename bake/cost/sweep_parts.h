@@ -19,11 +19,11 @@ typedef struct sweep {
     uint32_t frames[SWEEP_FRAMES], frame_count;
     uint32_t at; /* the compared frame among frames[] */
     images_grid grid;
-    size_t points;        /* of the grid */
-    pipeline_packed base; /* the default's: the reference reads it */
-    bool *direct_only;    /* a light: photons = false */
-    reference_input truth;     /* what out->reference was made from */
-    knob_setting *knobs;  /* one a setting, as out->settings */
+    size_t points;         /* of the grid */
+    pipeline_packed base;  /* the default's: the reference reads it */
+    bool *direct_only;     /* a light: photons = false */
+    reference_input truth; /* what out->reference was made from */
+    knob_list knobs;       /* settings as out->settings */
     sweep_pack *packs;
     uint64_t kept;    /* bytes of packs */
     float **indirect; /* a setting: its indirect light on the grid */
@@ -34,10 +34,15 @@ bool sweep_cancelled(const sweep *s, vit_text *why);
 /* sweep_packs.c: the pack of setting i, made again if it was not kept. */
 vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why);
 void sweep_drop_pack(sweep *s, uint32_t i);
-/* Pack, bytes, images and work of every setting. */
-vit_status sweep_pictures(sweep *s, vit_text *why);
+/* Pack, bytes, images and work of the settings first .. out->count - 1. */
+vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why);
 /* Fills out->direct from the default's direct light. */
 vit_status sweep_compare_direct(sweep *s, vit_text *why);
+
+/* sweep_search.c: fills the list of settings. First the default, each knob alone and some combinations; then, round by round,
+ * what lies beside the settings on the front of error against work, so that the front gets dense where it is. Needs a
+ * reference. */
+vit_status sweep_search(sweep *s, vit_text *why);
 
 /* sweep_times.c: ms of every setting, and the path tracer's. */
 vit_status sweep_times(sweep *s, vit_text *why);
