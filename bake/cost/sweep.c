@@ -110,7 +110,8 @@ static vit_status list_settings(sweep *s, vit_text *why) {
     s->out->settings = calloc(s->knobs.most, sizeof *s->out->settings);
     s->packs = calloc(s->knobs.most, sizeof *s->packs);
     s->indirect = calloc(s->knobs.most, sizeof *s->indirect);
-    return s->out->settings && s->packs && s->indirect ? VIT_OK : fail(VIT_FAILED, why, "out of memory");
+    s->directs = calloc(s->knobs.most, sizeof *s->directs);
+    return s->out->settings && s->packs && s->indirect && s->directs ? VIT_OK : fail(VIT_FAILED, why, "out of memory");
 }
 
 /* Errors mean something when the reference's own is below a tenth of the smallest: what it must fall below, 0 if it has. */
@@ -185,12 +186,10 @@ static vit_status run(sweep *s, vit_text *why) {
     spread_end(); /* the other ranks must not take time from what is timed */
     if (status != VIT_OK || !first_rank)
         return status;
-    status = sweep_compare_direct(s, why);
-    if (status == VIT_OK) {
-        progress_end(s->progress);
-        say_reference(s);
-    }
-    if (status == VIT_OK && s->in->repeats > 0)
+    sweep_compare_direct(s);
+    progress_end(s->progress);
+    say_reference(s);
+    if (s->in->repeats > 0)
         status = sweep_times(s, why);
     if (status == VIT_OK)
         front_mark(s->out);
@@ -208,6 +207,9 @@ vit_status sweep_run(const sweep_input *in, cost_results *out, vit_text *why) {
         if (s.indirect)
             free(s.indirect[i]);
     }
+    for (uint32_t i = 0; i < s.direct_count; i++)
+        free(s.directs[i].image);
+    free(s.directs);
     free(s.packs);
     free(s.indirect);
     knobs_close(&s.knobs);

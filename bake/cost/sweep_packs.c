@@ -78,6 +78,7 @@ static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
     cost_setting *c = &s->out->settings[i];
     vit_requirements need;
     vit_statistics stats;
+    const float *direct;
     vit_status status = sweep_take_pack(s, i, why);
     if (status != VIT_OK)
         return status;
@@ -94,12 +95,12 @@ static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
         status = images_render(&info, s->at, &s->grid, c->image, &stats, why);
     if (status == VIT_OK)
         note_work(s->out, c, &stats);
-    info.count_work = 0;
-    info.view = VIT_VIEW_indirect;
     if (status == VIT_OK)
-        status = images_render(&info, s->at, &s->grid, s->indirect[i], NULL, why);
+        status = sweep_direct(s, i, &direct, why);
     if (status != VIT_OK)
         return fail(status, why, c->name, why->text);
+    for (size_t k = 0; k < 3 * s->points; k++)
+        s->indirect[i][k] = c->image[k] - direct[k];
     return check_same(s, i, why);
 }
 
@@ -111,31 +112,5 @@ vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why) {
             sweep_drop_pack(s, i);
         progress_step(s->progress, (i + 1.0) / s->knobs.most);
     }
-    return status;
-}
-
-vit_status sweep_compare_direct(sweep *s, vit_text *why) {
-    const reference *r = &s->out->reference;
-    float *image = calloc(3 * s->points, sizeof *image);
-    if (!image) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
-    }
-    vit_status status = sweep_take_pack(s, 0, why);
-    vit_open_info info = how(s, 0);
-    info.view = VIT_VIEW_direct;
-    if (status == VIT_OK)
-        status = images_render(&info, s->at, &s->grid, image, NULL, why);
-    if (status == VIT_OK) {
-        double largest = 0, sum = 0;
-        s->out->direct = metrics_compare(r->direct, image, NULL, r->width, r->height);
-        for (size_t i = 0; i < 3 * s->points; i++) {
-            const double d = (double)image[i] - r->direct[i];
-            largest = d > largest ? d : -d > largest ? -d : largest;
-            sum += r->direct[i];
-        }
-        s->out->direct_largest = sum > 0 ? largest * 3 * (double)s->points / sum : 0;
-    }
-    free(image);
     return status;
 }
