@@ -59,6 +59,9 @@ static void nothing_beats_what_is_on_the_front(void **unused) {
         for (uint32_t i = 0; i < COUNT; i++) {
             assert_false(settings[i].front && (settings[i].elsewhere || dominated(i, false)));
             assert_false(settings[i].front_relmse && (settings[i].elsewhere || dominated(i, true)));
+            for (uint32_t k = 0; k < i && settings[i].front; k++) /* the first of equals alone */
+                assert_false(settings[k].front && settings[k].ms == settings[i].ms &&
+                             settings[k].total.nmse == settings[i].total.nmse);
             if (!settings[i].elsewhere && !dominated(i, false)) { /* on it, or the like of one before it */
                 bool like = settings[i].front;
                 for (uint32_t k = 0; k < i; k++)
