@@ -20,7 +20,7 @@ endif
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
-KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh surface.clh visibility.cl samples.cl direct.cl \
+KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh surface.clh cells.clh visibility.cl samples.cl direct.cl \
            photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl sparse.cl resolve.cl
 
 RUNTIME := $(wildcard runtime/*.c)

@@ -85,7 +85,10 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
                    {"--photons", &o->photons, 0, 1000000, "a number of photon paths, 0 to 1000000"},
                    {"--bounces", &o->bounces, 1, 32, "1 to 32"},
                    {"--tile", &o->tile, 8, 64, "8, 16, 32 or 64"},
-                   {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"}};
+                   {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"},
+                   {"--zones", &o->zones, 0, 2, "0, 1, or 2 to part unlike lit surfaces too"},
+                   {"--effective-area", &o->effective_area, 0, 1, "0 or 1"},
+                   {"--bounce-sequence", &o->bounce_sequence, 0, 1, "0 or 1"}};
     long n = 0;
     *known = true;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
@@ -127,7 +130,7 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
 }
 
 vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
-    *out = (options){.photons = -1, .normal_keys = -1};
+    *out = (options){.photons = -1, .normal_keys = -1, .zones = -1, .effective_area = -1, .bounce_sequence = -1};
     for (int i = 1; i < argc; i++) {
         const char *wants = "";
         bool known;
@@ -169,6 +172,12 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     if (o->kernel)
         q->flatten = strcmp(o->kernel, "sphere") == 0 ? 0 : q->flatten > 0 ? q->flatten : 15;
     q->normal_keys = o->normal_keys >= 0 ? o->normal_keys != 0 : q->normal_keys;
+    if (o->zones >= 0) {
+        q->zones = o->zones > 0;
+        q->light_zones = o->zones > 1;
+    }
+    q->effective_area = o->effective_area >= 0 ? o->effective_area != 0 : q->effective_area;
+    q->bounce_sequence = o->bounce_sequence >= 0 ? o->bounce_sequence != 0 : q->bounce_sequence;
     q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
     q->texture_filter = o->texture_filter ? fields_place(SCENE_FILTERS, o->texture_filter) : q->texture_filter;
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
@@ -199,7 +208,7 @@ void options_help(void) {
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
          "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
-         "  --texture-filter nearest|bilinear|trilinear\n"
+         "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

@@ -16,7 +16,7 @@ typedef struct options {
     double fit;                /* milliseconds a frame, 0: none */
     double fit_work;           /* work units a frame, a whole number, 0: none */
     const char *estimate, *smoothing, *kernel, *texture_filter;
-    int normal_keys;           /* -1: as the scene says */
+    int normal_keys, zones, effective_area, bounce_sequence; /* -1: as the scene says; zones: 2 with light_zones */
 } options;
 
 /* VIT_USAGE: why->text names the option. */

@@ -1,7 +1,5 @@
 #include "photon_surface.h"
 
-#define CONE 0.02f /* metres of footprint a metre of distance, for the choice of mip level; PHOTON_CONE of kernels/photons.cl  \
-                    */
 
 /* Signed edge functions of a triangle: weights of its vertices, not normalised; ray_edges() of kernels/ray.clh. */
 static void edge_weights(const vit_triangle *t, vec3 origin, vec3 direction, float weight[3]) {
@@ -134,7 +132,7 @@ photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 dire
 
 photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle) {
     float b[3];
-    return photon_surface_seen(s, origin, direction, distance, triangle, CONE, b);
+    return photon_surface_seen(s, origin, direction, distance, triangle, PHOTON_CONE, b);
 }
 
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {

@@ -5,6 +5,8 @@
 #include "atlas.h"
 #include "photon_math.h"
 
+#define PHOTON_CONE 0.02f /* metres of footprint a metre of distance, for the choice of mip level; as in kernels/photons.cl */
+
 /* The scene as the pack holds it. */
 typedef struct photon_scene {
     const vit_triangle *triangles;

@@ -59,10 +59,12 @@ static vec3 emission(const vit_light *light, uint32_t count, uint32_t i, uint32_
     return d;
 }
 
-/* Cosine-distributed direction about n from the bounce's two random numbers. */
-static vec3 bounce(vec3 n, uint32_t number, uint32_t hit) {
-    const uint32_t seed = pcg(number ^ pcg(hit * 2u + 1u));
-    const float a = unit_float(seed), b = unit_float(pcg(seed));
+/* Cosine-distributed direction about n from the bounce's two random numbers; photon_numbers() of kernels/photons.cl. */
+static vec3 bounce(vec3 n, uint32_t number, uint32_t hit, bool sequence) {
+    static const uint32_t alpha[6] = {0xe60e2b73u, 0xcebd76dbu, 0xb9c9aa3bu, 0xa6f5777fu, 0x9609c71fu, 0x86d516e5u};
+    const uint32_t seed = pcg(number ^ pcg(hit * 2u + 1u)), k = hit % 3u * 2u;
+    const float a = unit_float(sequence ? number * alpha[k] + pcg(hit * 2u + 1u) : seed);
+    const float b = unit_float(sequence ? number * alpha[k + 1u] + pcg(hit * 2u + 2u) : pcg(seed));
     const float s = sqrtf(a), c = sqrtf(float_max(1.0f - a, 0.0f));
     float sp, cp;
     sincos_turn(b, &sp, &cp);
@@ -72,13 +74,20 @@ static vec3 bounce(vec3 n, uint32_t number, uint32_t hit) {
 }
 
 /* power: W, incident. */
-static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius) {
+static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, uint32_t zone) {
     const float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * PHOTON_INV_PI * inv;
     *q = (vit_photon){.position = {p.x, p.y, p.z},
                       .radius2 = r2,
                       .direction = {d.x, d.y, d.z},
                       .inv_radius2 = inv,
-                      .power = {power.x * scale, power.y * scale, power.z * scale}};
+                      .power = {power.x * scale, power.y * scale, power.z * scale},
+                      .zone = zone};
+}
+
+static uint32_t cell_of(const baking *b, vec3 direction, uint32_t triangle, const float weight[3]) {
+    const vit_triangle *t = b->in->triangles + triangle;
+    const uint32_t back = vec3_dot((vec3){t->nx, t->ny, t->nz}, direction) > 0.0f;
+    return b->in->cells ? cells_at(b->in->cells, 2 * triangle + back, weight[1], weight[2]) : 0;
 }
 
 /* Path i of a light; its k-th photon goes to slots[k * paths + i]. A photon is stored at every hit but the first, which is
@@ -96,15 +105,16 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
         const uint32_t triangle = photon_rays_nearest(&b->rays, o, d, &t);
         if (triangle == VIT_NONE)
             return;
-        const photon_surface s = photon_surface_at(b->rays.s, o, d, t, triangle);
+        float weight_of[3];
+        const photon_surface s = photon_surface_seen(b->rays.s, o, d, t, triangle, PHOTON_CONE, weight_of);
         if (hit > 0)
-            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius);
+            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius, cell_of(b, d, triangle, weight_of));
         else
             power = vec3_scale(power, range_factor(&l->light, t * t));
         power = vec3_times(power, s.albedo);
         if (!(power.x + power.y + power.z > 0.0f))
             return;
-        d = bounce(s.face, number, hit);
+        d = bounce(s.face, number, hit, b->in->sequence);
         o = s.position;
     }
 }

@@ -3,6 +3,7 @@
 #define VIT_BAKE_PHOTONS_H
 
 #include "atlas.h"
+#include "cells.h"
 
 #define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
 
@@ -23,7 +24,9 @@ typedef struct photons_input {
     float ray_offset, box_pad, radius; /* of vit_scene, metres */
     uint32_t effects;                  /* of vit_scene */
     uint32_t bounces;                  /* of vit_scene */
+    bool sequence;                     /* reflections follow a sequence rather than a hash: the effect SEQUENCE */
     uint32_t first_path;               /* number of the first path: those before it are traced while playing */
+    const cells *cells;                /* not NULL: a photon's zone is the index of the cell that it lands in; otherwise 0 */
     const photons_light *lights;       /* still lights */
     uint32_t light_count;
     photons_progress_fn *progress; /* may be NULL */

@@ -82,11 +82,16 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
                             .first_path = out->plan.scene.paths,
                             .radius = out->plan.scene.radius,
                             .bounces = out->plan.scene.bounces,
+                            .sequence = (out->plan.scene.effects & VIT_EFFECT_BIT_SEQUENCE) != 0,
+                            .cells = out->plan.scene.effects & VIT_EFFECT_BIT_ZONES && out->cells.count ? &out->cells : NULL,
                             .lights = lights,
                             .light_count = count,
                             .progress = step,
                             .user = p->progress};
+        free(out->photons);
         status = photons_bake(&in, p->threads, &out->photons, &out->plan.scene.baked, why);
+        if (status == VIT_OK && in.cells)
+            zones_assign(in.cells, out->photons, out->plan.scene.baked);
     }
     free(lights);
     return status;
@@ -99,10 +104,14 @@ static void measuring(void *user, const char *stage, double fraction) {
     progress_step(p, fraction);
 }
 
-/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. */
+/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. Zones and areas come later:
+ * they depend on the radius. */
 static vit_status settle_radius(bounds_input *in, pipeline_packed *out, vit_text *why) {
     double stored;
+    const uint32_t effects = in->scene->effects;
+    in->scene->effects &= ~(uint32_t)(VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA);
     vit_status status = bounds_count_photons(in, &stored, why);
+    in->scene->effects = effects;
     if (status == VIT_OK && stored > 0)
         plan_set_radius(&out->plan, plan_radius(&out->plan, stored), out->photons);
     return status;
@@ -132,8 +141,37 @@ static void point_sections(const pipeline *p, pipeline_packed *out) {
                                              [VIT_SECTION_TEXR] = p->atlas.textures,
                                              [VIT_SECTION_MIPS] = p->atlas.mips,
                                              [VIT_SECTION_ATLS] = p->atlas.texels,
+                                             [VIT_SECTION_SIDE] = out->cells.sides,
+                                             [VIT_SECTION_CELL] = out->cells.cells,
                                              [VIT_SECTION_PHOT] = out->photons,
                                              [VIT_SECTION_GOLD] = out->gold}};
+}
+
+/* Zones and effective areas, for the radius that the plan has now; then the baked photons' zones. */
+static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeline_packed *out, vit_text *why) {
+    bool *gives = calloc(out->tracks.light_count + 1u, sizeof *gives);
+    if (!gives)
+        return out_of_memory(why);
+    for (uint32_t i = 0; i < out->tracks.light_count; i++)
+        gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
+    progress_stage(p->progress, "zones and areas");
+    const zones_input in = {.geometry = &p->geometry,
+                            .triangles = p->model.triangles,
+                            .materials = out->plan.materials,
+                            .atlas = &p->atlas,
+                            .tracks = &out->tracks,
+                            .gives_photons = gives,
+                            .scene = &out->plan.scene,
+                            .zones = c->quality.zones,
+                            .by_light = c->quality.light_zones,
+                            .areas = c->quality.effective_area,
+                            .threads = p->threads,
+                            .progress = step,
+                            .user = p->progress};
+    vit_status status = zones_bake(&in, &out->cells, &out->zones, why);
+    out->plan.scene.cells = out->cells.count;
+    free(gives);
+    return status == VIT_OK && c->quality.zones ? trace_photons(p, out, why) : status;
 }
 
 static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_packed *out, vit_text *why) {
@@ -151,6 +189,9 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
     vit_status status = VIT_OK;
     if ((out->plan.scene.effects & VIT_EFFECT_BIT_PHOTONS) && !(c->quality.radius > 0))
         status = settle_radius(&in, out, why);
+    if (status == VIT_OK && (out->plan.scene.effects & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA)))
+        status = bake_zones(p, c, out, why);
+    point_sections(p, out);
     cut_frames(c, out);
     if (status == VIT_OK)
         status = bounds_measure(&in, why);
@@ -182,6 +223,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->bytes);
     free(packed->gold);
     free(packed->photons);
+    cells_free(&packed->cells);
     plan_free(&packed->plan);
     tracks_free(&packed->tracks);
     memset(packed, 0, sizeof *packed);

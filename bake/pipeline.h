@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "reach.h"
 #include "tracks.h"
+#include "zones.h"
 
 /* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
 typedef struct pipeline {
@@ -38,6 +39,8 @@ typedef struct pipeline_choice {
 typedef struct pipeline_packed {
     plan plan;
     tracks tracks; /* of the frames that were chosen */
+    cells cells;      /* zones and effective areas; none without them */
+    zones_found zones;
     vit_photon *photons;
     vit_gold *gold;
     pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */

@@ -107,6 +107,9 @@ static uint32_t effects_of_quality(const scene *s, const plan *p) {
     e |= q->buckets && q->raw ? VIT_EFFECT_BIT_RAW_BUCKETS : 0;
     e |= q->flatten > 0 ? VIT_EFFECT_BIT_FLATTENED : 0;
     e |= q->normal_keys ? VIT_EFFECT_BIT_NORMAL_KEYS : 0;
+    e |= q->zones ? VIT_EFFECT_BIT_ZONES : 0;
+    e |= q->effective_area ? VIT_EFFECT_BIT_AREA : 0;
+    e |= q->bounce_sequence ? VIT_EFFECT_BIT_SEQUENCE : 0;
     e |= q->indirect_samples > 1 ? VIT_EFFECT_BIT_SPARSE : 0;
     e |= q->indirect_samples == 16 ? VIT_EFFECT_BIT_SPARSE_16 : 0;
     return e;

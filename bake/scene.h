@@ -64,6 +64,10 @@ typedef struct scene_quality {
     bool raw;                  /* buckets without interpolation, 54 directions: the source's way */
     double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
     bool normal_keys;
+    bool zones;                /* photons count only for surfaces that see where they landed, by 32 baked zones */
+    bool light_zones;          /* zones also part surfaces that are lit unlike; needs zones */
+    bool effective_area;       /* estimates are divided by the part of the kernel that lies on surfaces */
+    bool bounce_sequence;      /* reflections follow a low-discrepancy sequence */
     int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
     int texture_filter;        /* FILTER_* */
 } scene_quality;

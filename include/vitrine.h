@@ -129,6 +129,7 @@ typedef struct vit_statistics {
     uint32_t pass_count;
     const char *pass_names[VIT_MAX_PASSES];
     double pass_ms[VIT_MAX_PASSES];                          /* last frame; 0 unless opened with profile */
+    uint32_t lanes;                                          /* samples a work-item, in use */
     uint32_t work_count;                                     /* kinds of work; 0 unless opened with count_work */
     const char *work_names[VIT_MAX_WORKS];
     int work_same[VIT_MAX_WORKS];                            /* 1: equal on every device; 0: compare at equal `lanes` only */

@@ -33,6 +33,8 @@
     X(TEXR, vit_texture, s->textures)                                                                                            \
     X(MIPS, vit_mip, s->mips)                                                                                                    \
     X(ATLS, vit_u32, s->texels)                                                                                                  \
+    X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                  \
+    X(CELL, vit_cell, s->cells)                                                                                                  \
     X(PHOT, vit_photon, s->baked)                                                                                                \
     X(GOLD, vit_gold, s->frames)
 

@@ -169,6 +169,9 @@ kernel void make_nodes(global const vit_scene *scene, uint max_nodes, global con
         node_count[child] = grandchildren;
         for (uint k = 0; k < 12; k++)
             VIT_PLANE(bounds, k, max_nodes)[child] = (k % 6) < 3 ? 0x7fffffff : (int)0x80000000;
+#if VIT_EFFECT_ZONES
+        VIT_PLANE(bounds, 12, max_nodes)[child] = 0;
+#endif
     }
 }
 
@@ -186,8 +189,12 @@ static inline uint cluster_if_any(global const vit_scene *scene, global const ui
     return (masks[w] >> (key & 31u)) & 1u ? prefix[w] + (uint)popcount(masks[w] & ((1u << (key & 31u)) - 1u)) : VIT_NONE;
 }
 
-static inline void widen(volatile global int *bounds, uint max_nodes, uint node, const int *lo, const int *hi)
+/* accepted: zones of the samples, 0 without zones. */
+static inline void widen(volatile global int *bounds, uint max_nodes, uint node, const int *lo, const int *hi, uint accepted)
 {
+#if VIT_EFFECT_ZONES
+    atomic_or(VIT_PLANE(bounds, 12, max_nodes) + node, (int)accepted);
+#endif
     for (int k = 0; k < 3; k++) {
         atomic_min(VIT_PLANE(bounds, k, max_nodes) + node, lo[k]);
         atomic_max(VIT_PLANE(bounds, 3 + k, max_nodes) + node, hi[k]);
@@ -197,15 +204,16 @@ static inline void widen(volatile global int *bounds, uint max_nodes, uint node,
 }
 
 /* Clusters' boxes of positions (planes 0..5 of bounds: lo, hi) and of normals (6..11). The box of normals stands for the
- * normal cone: a photon that comes from behind for each corner of it comes from behind for every sample. Minima and maxima of
- * integers that order as the floats do: no order of execution shows. */
+ * normal cone: a photon that comes from behind for each corner of it comes from behind for every sample. With zones, plane 12 has
+ * those that any sample accepts. Minima and maxima of integers that order as the floats do, and bits: no order of execution shows. */
 kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint run, global const uint *keys, global const float *position,
-                           global const uint *normal, global const uint *masks, global const uint *prefix, volatile global int *bounds,
-                           volatile global uint *counters)
+                           global const uint *normal, global const uint *accept, global const uint *masks, global const uint *prefix,
+                           volatile global int *bounds, volatile global uint *counters)
 {
     uint n = scene->samples, begin = (uint)get_global_id(0) * run, end = min(begin + run, n);
     uint known = VIT_NONE, node = VIT_NONE;
     int lo[6], hi[6];
+    uint accepted = 0;
     for (uint first = begin; first < end; first += VIT_LANES) {
         li key = L_AS_INT(L_LOAD(keys + first));
         li rest = L_GE(key, (li)0);
@@ -221,14 +229,18 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
             rest &= ~own;
             if (k != known) {
                 if (node < max_nodes)
-                    widen(bounds, max_nodes, node, lo, hi);
+                    widen(bounds, max_nodes, node, lo, hi, accepted);
                 known = k;
                 node = cluster_of(scene, masks, prefix, k);
+                accepted = 0;
                 for (int i = 0; i < 6; i++) {
                     lo[i] = 0x7fffffff;
                     hi[i] = (int)0x80000000;
                 }
             }
+#if VIT_EFFECT_ZONES
+            accepted |= l_or(l_sel_u(own, L_LOAD(accept + first), (lu)0));
+#endif
             if (node >= max_nodes)
                 atomic_add(counters + VIT_COUNTER_dropped_samples, (uint)popcount(l_bits(own)));
             for (int i = 0; i < 6; i++) {
@@ -238,6 +250,6 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
         }
     }
     if (node < max_nodes)
-        widen(bounds, max_nodes, node, lo, hi);
+        widen(bounds, max_nodes, node, lo, hi, accepted);
 }
 #endif

@@ -2,16 +2,66 @@
  * that arrive from the front. METHODS.md P, step 9 and "We correct". vit_photon.power is Phi 2 / (pi r^2). */
 #if VIT_EFFECT_PHOTONS
 
-/* Does a photon count for a sample? The place for acceptance tests: so far, that it arrives from the front of the surface. */
-static inline li estimate_accepts(lv3 normal, lv3 direction)
+/* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the kernel's
+ * disc that lies on surfaces in those zones. METHODS.md does neither; bake/README.md, "Zones and areas", says why we do. */
+#define ESTIMATE_BAKED global const uint *accept, global const float *inverse_area
+typedef struct estimate_sample {
+    lv3 p, s; /* position, unit normal */
+#if VIT_EFFECT_ZONES
+    li accept;
+#endif
+#if VIT_EFFECT_AREA
+    lf inverse_area;
+#endif
+} estimate_sample;
+
+static inline estimate_sample estimate_load(uint n, uint first, global const float *position, global const uint *normal, ESTIMATE_BAKED)
 {
-    return L_LT(lv3_dot(normal, direction), (lf)0);
+    estimate_sample r;
+    r.p = lv3_load_planes(position, n, first);
+    r.s = l_decode_normal(L_LOAD(normal + first));
+#if VIT_EFFECT_ZONES
+    r.accept = L_AS_INT(L_LOAD(accept + first));
+#endif
+#if VIT_EFFECT_AREA
+    r.inverse_area = L_LOAD(inverse_area + first);
+#endif
+    return r;
 }
 
-/* What the sum of a sample is divided by: the part of the kernel's area that lies on surfaces. So far the whole disc. */
-static inline lv3 estimate_normalise(lv3 sum)
+/* The samples of these numbers. */
+static inline estimate_sample estimate_load_at(uint n, li at, global const float *position, global const uint *normal, ESTIMATE_BAKED)
 {
+    estimate_sample r;
+    r.p = lv3_set(L_GATHER(lf, VIT_PLANE(position, 0, n), at), L_GATHER(lf, VIT_PLANE(position, 1, n), at),
+                  L_GATHER(lf, VIT_PLANE(position, 2, n), at));
+    r.s = l_decode_normal(l_gather_u(normal, at));
+#if VIT_EFFECT_ZONES
+    r.accept = L_AS_INT(l_gather_u(accept, at));
+#endif
+#if VIT_EFFECT_AREA
+    r.inverse_area = L_GATHER(lf, inverse_area, at);
+#endif
+    return r;
+}
+
+/* Does a photon count for a sample? Without zones, if it arrives from the front of the surface. */
+static inline li estimate_accepts(const estimate_sample *sample, global const vit_photon *photon)
+{
+#if VIT_EFFECT_ZONES
+    return L_NE(sample->accept & (int)photon->zone, (li)0);
+#else
+    return L_LT(lv3_dot(sample->s, lv3_load(photon->direction)), (lf)0);
+#endif
+}
+
+static inline lv3 estimate_normalise(const estimate_sample *sample, lv3 sum)
+{
+#if VIT_EFFECT_AREA
+    return lv3_scale(sum, sample->inverse_area);
+#else
     return sum;
+#endif
 }
 
 #if VIT_EFFECT_LIST
@@ -20,8 +70,8 @@ static inline lv3 estimate_normalise(lv3 sum)
         global const uint *list_count, global const uint *list, global const vit_photon *photons
 #define ESTIMATE_ARGUMENTS scene, max_nodes, masks, prefix, list_first, list_count, list, photons
 
-/* Irradiance of the lanes' samples, W/m2: key (negative: none, 0 there), position, unit normal. Lanes may have any keys. */
-static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, lv3 p, lv3 s WORK_PASSED)
+/* Irradiance of the lanes' samples, W/m2; key: negative for none, 0 there. Lanes may have any keys. */
+static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
 {
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
@@ -37,24 +87,24 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, lv3 p, lv3 s WORK
         WORK_ADD(evaluations, (ulong)popcount(l_bits(own)) * (ulong)(end - at));
         for (; at < end; at++) {
             global const vit_photon *q = photons + *at;
-            lv3 o = lv3_sub(p, lv3_load(q->position));
+            lv3 o = lv3_sub(sample->p, lv3_load(q->position));
             lf d2 = lv3_dot(o, o);
 #if VIT_EFFECT_FLATTENED
-            lf off = lv3_dot(o, s);
+            lf off = lv3_dot(o, sample->s);
             d2 = fma(off * off, (lf)scene->flatten, d2);
 #endif
             lf w = l_max(fma(d2, (lf)-q->inv_radius2, (lf)1), (lf)0);
-            w = l_sel(estimate_accepts(s, lv3_load(q->direction)), w, (lf)0);
+            w = l_sel(estimate_accepts(sample, q), w, (lf)0);
             sum = lv3_along(sum, lv3_load(q->power), w);
         }
-        total = lv3_sel(own, estimate_normalise(sum), total);
+        total = lv3_sel(own, estimate_normalise(sample, sum), total);
     }
     return total;
 }
 
 #if !VIT_EFFECT_SPARSE
 kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
-                          global float *indirect WORK_PARAMETERS)
+                          ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -62,8 +112,10 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
     li key = L_AS_INT(L_LOAD(keys + first));
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     WORK_BEGIN
-    if (l_any(L_GE(key, (li)0)))
-        total = estimate_gather(ESTIMATE_ARGUMENTS, key, lv3_load_planes(position, n, first), l_decode_normal(L_LOAD(normal + first)) WORK_PASS);
+    if (l_any(L_GE(key, (li)0))) {
+        estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
+        total = estimate_gather(ESTIMATE_ARGUMENTS, key, &sample WORK_PASS);
+    }
     lv3_store_planes(total, indirect, n, first);
     WORK_END
 }
@@ -78,8 +130,9 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
 
 #if VIT_EFFECT_RAW_BUCKETS
 /* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. As estimate_gather; x, y: pixels. */
-static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, lv3 p, lv3 s, li x, li y WORK_PASSED)
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
 {
+    lv3 p = sample->p, s = sample->s;
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     while (l_any(rest)) {
@@ -102,7 +155,7 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, lv3 p, lv3 s, li x, l
             lf w = 2.0f * l_max(lv3_dot(s, lv3_set((lf)(dx * unit), (lf)(dy * unit), (lf)(dz * unit))), (lf)0);
             sum = lv3_along(sum, lv3_load(power), w);
         }
-        total = lv3_sel(own, estimate_normalise(sum), total);
+        total = lv3_sel(own, estimate_normalise(sample, sum), total);
     }
     return total;
 }
@@ -122,8 +175,9 @@ static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
 
 /* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by how
  * near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y: pixels. */
-static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, lv3 p, lv3 s, li x, li y WORK_PASSED)
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
 {
+    lv3 p = sample->p, s = sample->s;
     li rest = L_GE(key, (li)0);
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     global const vit_camera *camera = cameras + frame;
@@ -175,7 +229,7 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, lv3 p, lv3 s, li x, l
             weights += w;
         }
         lf scale = l_sel(L_GT(weights, (lf)0), 1.0f / l_max(weights, (lf)1e-20f), (lf)0);
-        total = lv3_sel(own, estimate_normalise(lv3_scale(sum, scale)), total);
+        total = lv3_sel(own, estimate_normalise(sample, lv3_scale(sum, scale)), total);
     }
     return total;
 }
@@ -183,7 +237,7 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, lv3 p, lv3 s, li x, l
 
 #if !VIT_EFFECT_SPARSE
 kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
-                             global float *indirect WORK_PARAMETERS)
+                             ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -192,8 +246,10 @@ kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global 
     lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
     l_pixel(scene, first, &x, &y);
     WORK_BEGIN
-    if (l_any(L_GE(key, (li)0)))
-        total = bucket_gather(BUCKET_ARGUMENTS, key, lv3_load_planes(position, n, first), l_decode_normal(L_LOAD(normal + first)), x, y WORK_PASS);
+    if (l_any(L_GE(key, (li)0))) {
+        estimate_sample sample = estimate_load(n, first, position, normal, accept, inverse_area);
+        total = bucket_gather(BUCKET_ARGUMENTS, key, &sample, x, y WORK_PASS);
+    }
     lv3_store_planes(total, indirect, n, first);
     WORK_END
 }

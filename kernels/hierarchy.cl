@@ -27,5 +27,12 @@ kernel void node_bounds(global const vit_scene *scene, uint max_nodes, uint leve
             v = least ? min(v, plane[first + i]) : max(v, plane[first + i]);
         plane[node] = v;
     }
+#if VIT_EFFECT_ZONES
+    global int *zones = VIT_PLANE(bounds, 12, max_nodes);
+    int accepted = 0;
+    for (uint i = 0; i < count; i++)
+        accepted |= zones[first + i];
+    zones[node] = accepted;
+#endif
 }
 #endif

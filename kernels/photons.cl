@@ -35,10 +35,32 @@ static inline lv3 photon_bounce(lv3 n, lf a, lf b)
     return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
 }
 
+#if VIT_EFFECT_SEQUENCE
+constant uint photon_alpha[6] = {0xe60e2b73u, 0xcebd76dbu, 0xb9c9aa3bu, 0xa6f5777fu, 0x9609c71fu, 0x86d516e5u}; /* 2^32 / phi^(k + 1), phi^7 = phi + 1, made odd */
+#endif
+
+/* Two numbers in [0, 1) for the reflection at a hit. */
+static inline void photon_numbers(lu path, uint hit_number, lf *u, lf *v)
+{
+#if VIT_EFFECT_SEQUENCE
+    /* The R sequence (Roberts 2018) in the six dimensions of three reflections together, in integers modulo 2^32; later hits start
+     * anew with other shifts. Paths are numbered along the Z-order curve of their emission, so any stretch of the sequence, which is
+     * as evenly spread as the whole, belongs to neighbouring directions. */
+    uint k = (hit_number % 3u) * 2u, shift = hit_number * 2u;
+    *u = l_unit_float(path * photon_alpha[k] + l_pcg((lu)(shift + 1u)));
+    *v = l_unit_float(path * photon_alpha[k + 1u] + l_pcg((lu)(shift + 2u)));
+#else
+    lu seed = l_pcg(path ^ l_pcg((lu)(hit_number * 2u + 1u)));
+    *u = l_unit_float(seed);
+    *v = l_unit_float(l_pcg(seed));
+#endif
+}
+
 /* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
-static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, float radius)
+static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, float radius, lu zone)
 {
     float v[12 * VIT_LANES];
+    uint zones[VIT_LANES];
     float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * VIT_INV_PI * inv;
     lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);
     p = lv3_sel(valid, p, zero);
@@ -54,6 +76,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
     L_STORE(power.y * scale, v + 7 * VIT_LANES);
     L_STORE(power.z * scale, v + 8 * VIT_LANES);
     L_STORE(l_sel(valid, (lf)r2, (lf)-1), v + 9 * VIT_LANES);
+    L_STORE(l_sel_u(valid, zone, (lu)0), zones);
     for (int i = 0; i < VIT_LANES; i++) {
         global vit_photon *q = photons + slot + i;
         q->position[0] = v[i];
@@ -67,13 +90,13 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
         q->power[0] = v[6 * VIT_LANES + i];
         q->power[1] = v[7 * VIT_LANES + i];
         q->power[2] = v[8 * VIT_LANES + i];
-        q->zone = 0;
+        q->zone = zones[i];
     }
 }
 
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
-kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global vit_photon *photons,
-                         volatile global uint *counters WORK_PARAMETERS)
+kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides, global const uint *cells,
+                         global vit_photon *photons, volatile global uint *counters WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
@@ -112,7 +135,14 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             WORK_LANES(texture_fetches, s.textured);
         }
         if (hit_number > 0) {
-            photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius);
+            lu zone = (lu)0;
+#if VIT_EFFECT_ZONES
+            if (l_any(alive)) {
+                cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
+                zone = cell_zone(cells, &cell);
+            }
+#endif
+            photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius, zone);
             stored += popcount(l_bits(alive));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
@@ -123,8 +153,9 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
 #endif
         power = lv3_set(power.x * s.albedo.x, power.y * s.albedo.y, power.z * s.albedo.z);
         alive &= L_GT(power.x + power.y + power.z, (lf)0);
-        lu seed = l_pcg(path ^ l_pcg((lu)(hit_number * 2u + 1u)));
-        d = photon_bounce(s.face, l_unit_float(seed), l_unit_float(l_pcg(seed)));
+        lf u, v;
+        photon_numbers(path, hit_number, &u, &v);
+        d = photon_bounce(s.face, u, v);
         o = s.position;
     }
     atomic_add(counters + VIT_COUNTER_photons, stored);

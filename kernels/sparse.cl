@@ -34,25 +34,24 @@ static inline li sparse_sample(li i)
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
         global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,        \
         global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,        \
-        global const float *position, global const uint *normal
+        global const float *position, global const uint *normal, ESTIMATE_BAKED
 #define SPARSE_ARGUMENTS                                                                                                         \
-    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal
+    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal, accept, inverse_area
 
 /* Estimates the first `used` of the lanes' slots, which have this key, and stores them. */
 static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, global float *out, const int *slots, uint used, int key WORK_PASSED)
 {
     uint n = scene->samples;
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
-    lv3 p = lv3_set(L_GATHER(lf, VIT_PLANE(position, 0, n), sample), L_GATHER(lf, VIT_PLANE(position, 1, n), sample),
-                    L_GATHER(lf, VIT_PLANE(position, 2, n), sample));
-    lv3 s = l_decode_normal(l_gather_u(normal, sample));
+    estimate_sample found = estimate_load_at(n, sample, position, normal, accept, inverse_area);
+    lv3 p = found.p, s = found.s;
     li keyed = l_sel_i(L_LT(L_INDEX, (li)(int)used), (li)key, (li)-1);
 #if VIT_EFFECT_LIST
-    lv3 e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, p, s WORK_PASS);
+    lv3 e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
 #else
     li x, y;
     l_pixel_of(scene, sample, &x, &y);
-    lv3 e = bucket_gather(BUCKET_ARGUMENTS, keyed, p, s, x, y WORK_PASS);
+    lv3 e = bucket_gather(BUCKET_ARGUMENTS, keyed, &found, x, y WORK_PASS);
 #endif
     float value[SPARSE_FLOATS][VIT_LANES];
     L_STORE(e.x, value[0]);

@@ -10,6 +10,9 @@ typedef struct splat_batch {
     float x[SPLAT_BATCH], y[SPLAT_BATCH], z[SPLAT_BATCH], radius2[SPLAT_BATCH];
     float dx[SPLAT_BATCH], dy[SPLAT_BATCH], dz[SPLAT_BATCH];
     uint id[SPLAT_BATCH];
+#if VIT_EFFECT_ZONES
+    uint zone[SPLAT_BATCH];
+#endif
 } splat_batch;
 
 /* Fills the batch with photons begin .. begin + SPLAT_BATCH - 1 of a list; what is beyond `count` is empty. */
@@ -27,11 +30,17 @@ static inline void splat_load(local splat_batch *b, global const vit_photon *pho
         b->dy[i] = p->direction[1];
         b->dz[i] = p->direction[2];
         b->id[i] = id;
+#if VIT_EFFECT_ZONES
+        b->zone[i] = p->zone;
+#endif
     }
 }
 
 typedef struct splat_box {
     float lo[3], hi[3], nlo[3], nhi[3];
+#if VIT_EFFECT_ZONES
+    uint accept;
+#endif
 } splat_box;
 
 static inline splat_box splat_node(global const int *bounds, uint max_nodes, uint node)
@@ -43,22 +52,29 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
         r.nlo[k] = vit_from_ordered(VIT_PLANE(bounds, 6 + k, max_nodes)[node]);
         r.nhi[k] = vit_from_ordered(VIT_PLANE(bounds, 9 + k, max_nodes)[node]);
     }
+#if VIT_EFFECT_ZONES
+    r.accept = (uint)VIT_PLANE(bounds, 12, max_nodes)[node];
+#endif
     return r;
 }
 
 #define SPLAT_LOAD(p) L_LOAD((local const float *)(p))
 
 /* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box (METHODS.md P (3.8)) and which do not come from
- * behind for every normal in it. */
+ * behind for every normal in it; or, with zones, which lie in a zone that counts for one of its samples. */
 static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
 {
     lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
     lf ox = x - l_max((lf)box->lo[0], l_min(x, (lf)box->hi[0])), oy = y - l_max((lf)box->lo[1], l_min(y, (lf)box->hi[1])),
        oz = z - l_max((lf)box->lo[2], l_min(z, (lf)box->hi[2]));
     li near = L_LT(fma(oz, oz, fma(oy, oy, ox * ox)), SPLAT_LOAD(b->radius2 + i));
+#if VIT_EFFECT_ZONES
+    return near & L_NE(L_AS_INT(L_LOAD((local const uint *)(b->zone + i)) & box->accept), (li)0);
+#else
     lf dx = SPLAT_LOAD(b->dx + i), dy = SPLAT_LOAD(b->dy + i), dz = SPLAT_LOAD(b->dz + i);
     lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) + l_min(dz * box->nlo[2], dz * box->nhi[2]);
     return near & L_LT(least, (lf)0);
+#endif
 }
 
 /* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is

@@ -140,14 +140,29 @@ vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *wh
     return VIT_OK;
 }
 
-static const char *photon_fault(const vit_photon *p) {
+vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why) {
+    for (uint64_t i = 0; s->cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
+        const uint64_t parts = sides[i] >> VIT_SIDE_PARTS_SHIFT, first = sides[i] & VIT_SIDE_CELL;
+        if (parts < 1 || first + parts * parts > s->cells)
+            return pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells", (unsigned long long)i,
+                               (unsigned long long)parts, (unsigned long long)first, s->cells);
+    }
+    for (vit_u32 i = 0; i < s->cells; i++)
+        for (int k = 0; k < 3; k++)
+            if ((cells[i].word >> 9 * k & 511u) < VIT_CELL_AREA_LEAST)
+                return pack_refuse(why, "section CELL: cell %u: an area is too small", i);
+    return VIT_OK;
+}
+
+static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
     if (!all_finite(p->position, 3) || !all_finite(p->direction, 3) || !all_finite(&p->radius2, 1) ||
         !all_finite(&p->inv_radius2, 1))
         return "position, direction or radius is not finite";
     if (!all_in_range(p->power, 3, 0.0f, FLT_MAX))
         return "power must be finite and >= 0";
-    if (p->zone != 0)
-        return "zone is not 0";
+    const vit_u32 zone = p->zone & (s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f ? ~(p->zone & (0u - p->zone)) : ~0u);
+    if (zone != 0 || (p->zone == 0 && s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f))
+        return "zone is not one bit, or not 0 without zones";
     if (p->radius2 < 0.0f)
         return all_in_range(p->power, 3, 0.0f, 0.0f) ? 0 : "an empty slot has power";
     if (!is_unit(p->direction))
@@ -158,7 +173,7 @@ static const char *photon_fault(const vit_photon *p) {
 
 vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
     for (vit_u32 i = 0; i < s->baked; i++) {
-        const char *fault = photon_fault(&photons[i]);
+        const char *fault = photon_fault(s, &photons[i]);
         if (fault)
             return pack_refuse(why, "section PHOT: photon %u: %s", i, fault);
     }

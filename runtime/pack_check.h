@@ -22,6 +22,7 @@ vit_status pack_check_materials(const vit_scene *s, const vit_material *material
 vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why);
 vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why);
 vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why);
+vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why);
 vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why);
 
 /* pack_check_tree.c: triangles, then the tree over them. */

@@ -48,6 +48,7 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"lights", s->lights, 0, MAX_LIGHTS},
         {"paths", s->paths, 0, MAX_PATHS},
         {"baked", s->baked, 0, MAX_PHOTONS},
+        {"cells", s->cells, 0, VIT_SIDE_CELL},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
         {"slice_count", s->slice_count, 1, MAX_SLICES},
     };

@@ -65,7 +65,8 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
                  NEEDS(TRACED, PHOTONS),      NEEDS(LIST, PHOTONS),      NEEDS(BUCKETS, PHOTONS),
                  NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS),
                  NEEDS(SPARSE, PHOTONS),      NEEDS(SPARSE_16, SPARSE),    NEEDS(NEAREST, TEXTURES),
-                 NEEDS(TRILINEAR, TEXTURES)};
+                 NEEDS(TRILINEAR, TEXTURES),
+                 NEEDS(ZONES, PHOTONS),        NEEDS(AREA, PHOTONS),          NEEDS(SEQUENCE, PHOTONS)};
 #undef NEEDS
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
@@ -94,6 +95,8 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
     if ((s->paths > 0) != ((e & VIT_EFFECT_BIT_TRACED) != 0))
         return pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
+    if ((s->cells > 0) != ((e & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA)) != 0))
+        return pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
     if (s->baked > 0 && !photons)
         return pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
     if ((e & textured) && s->textures == 0)
@@ -109,7 +112,7 @@ static vit_status check_bounds(const vit_scene *s, vit_text *why) {
         return pack_refuse(why, "section META: max_list must be in 0..%u, got %u", MAX_LIST, s->max_list);
     if (s->slice_first > MAX_SLICE)
         return pack_refuse(why, "section META: slice_first must be in 0..%u, got %u", MAX_SLICE, s->slice_first);
-    if (s->leaf_words != 0 || !all_zero(s->reserved, sizeof s->reserved / sizeof s->reserved[0]))
+    if (!all_zero(s->reserved, sizeof s->reserved / sizeof s->reserved[0]))
         return pack_refuse(why, "section META: a reserved field is not 0");
     return VIT_OK;
 }

@@ -9,7 +9,7 @@
 
 /* Layouts are the same for every compiler only as long as this holds; ATLS is a plain array of words. */
 #define X(code, type, records)                                                                                                 \
-    _Static_assert(VIT_SECTION_##code == VIT_SECTION_ATLS || sizeof(type) % 16 == 0, #type " must be a multiple of 16 bytes");
+    _Static_assert(sizeof(type) == 4 || sizeof(type) == 8 || sizeof(type) % 16 == 0, #type " must be 4, 8 or a multiple of 16 bytes");
 VIT_SECTIONS(X)
 #undef X
 _Static_assert(sizeof(vit_pack_header) == 64 && sizeof(vit_pack_entry) == 32, "as drawn in vitrine_pack.h");
@@ -149,6 +149,8 @@ static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text
         status = pack_check_textures(s, at[VIT_SECTION_TEXR], why);
     if (status == VIT_OK)
         status = pack_check_mips(s, at[VIT_SECTION_MIPS], why);
+    if (status == VIT_OK)
+        status = pack_check_cells(s, at[VIT_SECTION_SIDE], at[VIT_SECTION_CELL], why);
     if (status == VIT_OK)
         status = pack_check_photons(s, at[VIT_SECTION_PHOT], why);
     if (status == VIT_OK)

@@ -5,7 +5,7 @@
 #define RAY_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels, B_bvh
 #define WORK B_work, V_pass, V_END /* last, in passes that count on the device */
 #define ESTIMATE B_masks, B_prefix, B_list_first, B_list_count, B_list, B_photons
-#define SPARSE_INPUT B_scene, B_cameras, V_frame, V_max_nodes, ESTIMATE, B_bounds, B_buckets, B_keys, B_position, B_normal
+#define SPARSE_INPUT B_scene, B_cameras, V_frame, V_max_nodes, ESTIMATE, B_bounds, B_buckets, B_keys, B_position, B_normal, B_accept, B_inverse_area
 #define SURFACE_SCENE B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels
 
 const vit_pass vit_passes[] = {
@@ -14,8 +14,9 @@ const vit_pass vit_passes[] = {
      ALWAYS,
      PER_SAMPLE,
      ONCE,
-     W(position) | W(normal) | W(albedo) | W(direct),
-     {SURFACE_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, B_position, B_normal, B_albedo, B_direct, WORK}},
+     W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area),
+     {SURFACE_SCENE, B_cameras, V_frame, B_hit_triangle, B_hit_distance, B_sides, B_cells, B_position, B_normal, B_albedo, B_direct, B_accept,
+      B_inverse_area, WORK}},
     {"direct_light",
      ON(LIGHTS),
      PER_SAMPLE,
@@ -23,7 +24,7 @@ const vit_pass vit_passes[] = {
      W(direct),
      {RAY_SCENE, B_lights, V_frame, B_hit_triangle, B_position, B_normal, B_albedo, B_direct, WORK}},
     {"clear_masks", ON(PHOTONS), PER_MASK_WORD, ONCE, W(masks) | W(counters), {B_scene, B_masks, B_counters, V_END}},
-    {"photon_paths", ON(TRACED), PER_PATH, ONCE, W(photons) | W(counters), {RAY_SCENE, B_lights, V_frame, B_photons, B_counters, WORK}},
+    {"photon_paths", ON(TRACED), PER_PATH, ONCE, W(photons) | W(counters), {RAY_SCENE, B_lights, V_frame, B_sides, B_cells, B_photons, B_counters, WORK}},
     {"cluster_keys",
      ON(PHOTONS),
      PER_RUN,
@@ -42,7 +43,7 @@ const vit_pass vit_passes[] = {
      PER_RUN,
      ONCE,
      W(bounds) | W(counters),
-     {B_scene, V_max_nodes, V_run, B_keys, B_position, B_normal, B_masks, B_prefix, B_bounds, B_counters, V_END}},
+     {B_scene, V_max_nodes, V_run, B_keys, B_position, B_normal, B_accept, B_masks, B_prefix, B_bounds, B_counters, V_END}},
     {"node_bounds",
      ON(PHOTONS),
      PER_LEVEL_NODE,
@@ -81,13 +82,13 @@ const vit_pass vit_passes[] = {
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, V_max_nodes, ESTIMATE, B_keys, B_position, B_normal, B_indirect, WORK}},
+     {B_scene, V_max_nodes, ESTIMATE, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_indirect, WORK}},
     {"estimate_buckets",
      ON(BUCKETS) | ON_DENSE,
      PER_SAMPLE,
      ONCE,
      W(indirect),
-     {B_scene, B_cameras, V_frame, V_max_nodes, B_masks, B_prefix, B_bounds, B_buckets, B_keys, B_position, B_normal, B_indirect, WORK}},
+     {B_scene, B_cameras, V_frame, V_max_nodes, B_masks, B_prefix, B_bounds, B_buckets, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_indirect, WORK}},
     {"estimate_sparse", ON(SPARSE), PER_COARSE, ONCE, W(coarse), {SPARSE_INPUT, B_coarse, WORK}},
     {"interpolate",
      ON(SPARSE),

@@ -43,19 +43,23 @@ typedef struct vit_limits {
     X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                              \
     X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                          \
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                          \
+    X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                             \
+    X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                            \
     X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
     X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
     X(position, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \
+    X(accept, ON(ZONES), NONE, (uint64_t)s->samples * 4)                                                                         \
+    X(inverse_area, ON(AREA), NONE, (uint64_t)s->samples * 4)                                                                    \
     X(photons, ON(PHOTONS), NONE, (uint64_t)s->photons * sizeof(vit_photon))                                                     \
     X(masks, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                     \
     X(prefix, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                    \
     X(keys, ON(PHOTONS), NONE, (uint64_t)s->samples * 4)                                                                         \
     X(node_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
     X(node_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
-    X(bounds, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 48)                                                                    \
+    X(bounds, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * (l->effects & ON(ZONES) ? 52 : 48))                                                                    \
     X(list_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
     X(list_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
     X(cursor, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                     \

@@ -21,6 +21,7 @@ vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
         vit_work_read(work, v->pack.scene, &v->limits, c, out);
     const vit_photon *baked = v->pack.section[VIT_SECTION_PHOT];
     out->frames = v->frames;
+    out->lanes = v->limits.lanes;
     out->nodes = c[VIT_COUNTER_nodes];
     out->clusters = c[VIT_COUNTER_clusters];
     out->photons = c[VIT_COUNTER_photons];

@@ -10,23 +10,23 @@
  * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
 #define PASS_BYTES(X)                                                                                                          \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + 12 + 4 + 4 + 12) * z->samples + HITS)                                                                  \
+    X(samples, (4 + 4 + 12 + 4 + 4 + 12 + z->baked) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
     X(direct_light, (4 + 12 + 4 + 4 + 12 + 12) * z->samples + z->lights)                                                       \
     X(clear_masks, 4 * z->masks)                                                                                               \
-    X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + HITS)                                                         \
+    X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                                                         \
     X(cluster_keys, (4 + 12 + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
     X(number_nodes, (4 + 4) * z->masks)                                                                                        \
     X(make_nodes, (4 + 4) * z->masks + (4 + 4 + BOX) * z->nodes)                                                               \
-    X(cluster_bounds, (4 + 12 + 4) * z->samples + BOX * (z->nodes - z->inner))                                                 \
+    X(cluster_bounds, (4 + 12 + 4 + z->zones) * z->samples + BOX * (z->nodes - z->inner))                                                 \
     X(node_bounds, (4 + 4 + BOX) * z->inner + BOX * (z->nodes - 1))                                                            \
     X(splat_count, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4) * z->listed)                                                  \
     X(splat_place, (4 + 4 + 4) * z->listed)                                                                                    \
     X(splat_write, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + 4) * z->listed + 4 * z->entries)                             \
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
-    X(estimate_list, (4 + 12 + 4 + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
-    X(estimate_buckets, (4 + 12 + 4 + 12) * z->samples + 16 * w[VIT_WORK_evaluations] + BOX * (w[VIT_WORK_evaluations] / 8))   \
-    X(estimate_sparse, (4 + 12 + 4 + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
+    X(estimate_list, (4 + 12 + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
+    X(estimate_buckets, (4 + 12 + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
+    X(estimate_sparse, (4 + 12 + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
     X(interpolate, (4 + 12 + 4 + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
@@ -36,7 +36,8 @@
 
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
 #define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
-#define BOX 48 /* of positions and of normals */
+#define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
+#define BOX BOX_BYTES(z->zones)
 
 typedef struct sizes {
     uint64_t samples, pixels, masks, photons, traced; /* numbers of records; traced: photon slots that paths fill */
@@ -44,8 +45,10 @@ typedef struct sizes {
     uint64_t entries;              /* list entries kept */
     uint64_t lights, bucket;       /* bytes: of a frame's lights, of a cluster's buckets */
     uint64_t coarse;               /* samples of the coarse grid */
-    uint64_t evaluation;           /* bytes: of an evaluation, a bucket with its part of the box */
+    uint64_t evaluation;           /* bytes: of an evaluation; of a bucket with its part of the box */
+    uint64_t corner;               /* bytes of a cluster's box that each of its eight octants takes, smoothed */
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
+    uint64_t zones, baked, cell;   /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
 
 /* What resolve reads a sample: the hit, and what the view shows; the second column with photons in the pack. */
@@ -73,10 +76,15 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
                .lights = s->lights * sizeof(vit_light),
                .bucket = VIT_BUCKETS_OF(l) * 16,
                .coarse = l->effects & ON(SPARSE) ? VIT_COARSE(s, l) : 0,
-               .evaluation = l->effects & ON(LIST) ? 4 + sizeof(vit_photon) : 16 + BOX / 8,
+               .nodes = 1, /* before the first frame there is the root */
                .shown = shown_bytes(l),
                .pixel = vit_format_bytes(l->format) + (l->effects & ON_DOTS ? 4u : 0u)};
-    if (l->effects & ON(PHOTONS)) {
+    z.zones = l->effects & ON(ZONES) ? 4 : 0;
+    z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
+    z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
+    z.corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX_BYTES(z.zones) / 8;
+    z.evaluation = l->effects & ON(LIST) ? 4 + sizeof(vit_photon) : 16 + z.corner;
+    if ((l->effects & ON(PHOTONS)) && c[VIT_COUNTER_nodes] > 0) {
         z.nodes = least(c[VIT_COUNTER_nodes], l->max_nodes);
         z.inner = least(c[VIT_COUNTER_nodes] - c[VIT_COUNTER_clusters], z.nodes);
         z.listed = (l->effects & ON(LIST) ? z.nodes : z.inner) - 1;

@@ -73,8 +73,8 @@ static inline void lab_build(lab *l, const char *options) {
     lab_check(e, "clBuildProgram");
 }
 
-/* The kernels and `test_kernels` as one program, `lanes` wide. lab_close() when done. */
-static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_kernels) {
+/* The kernels and `test_kernels` as one program, `lanes` wide, with more options (a space first). lab_close() when done. */
+static inline lab lab_open_with(unsigned lanes, vit_u32 effects, const char *more, const char *test_kernels) {
     const char *sources[LAB_MAX_SOURCES];
     char options[2048];
     cl_int e;
@@ -83,6 +83,8 @@ static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_ker
     memcpy(sources, vit_kernel_sources, vit_kernel_source_count * sizeof *sources);
     sources[vit_kernel_source_count] = test_kernels;
     lab_options(options, sizeof options, lanes, effects);
+    const size_t length = strlen(options);
+    assert_in_range(snprintf(options + length, sizeof options - length, "%s", more), 0, sizeof options - length - 1);
     l.context = clCreateContext(NULL, 1, &l.device, NULL, NULL, &e);
     lab_check(e, "clCreateContext");
     l.queue = clCreateCommandQueue(l.context, l.device, 0, &e);
@@ -91,6 +93,10 @@ static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_ker
     lab_check(e, "clCreateProgramWithSource");
     lab_build(&l, options);
     return l;
+}
+
+static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_kernels) {
+    return lab_open_with(lanes, effects, "", test_kernels);
 }
 
 static inline void lab_close(lab *l) {

@@ -12,6 +12,7 @@ $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc f
     vfprintf puts putchar fputs fwrite write
 $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
 $(B)/tests/golden/test_reference_runs.o: CFLAGS_ALL += $(if $(LIBS_COST),-DVIT_MPI=1)
+$(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a

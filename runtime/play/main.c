@@ -1,36 +1,14 @@
 /* vitrine-play: maps a pack, opens it with libvitrine, plays its frames into a sink, and says how it went.
- * Flow: options -> pack -> vit_require -> (explain, or: arena -> vit_open -> sink -> frames -> report). */
+ * Flow: options -> pack -> vit_require -> (explain, or: arena -> vit_open -> sink -> frames -> counting -> report -> budgets).
+ */
 #include "failure.h"
-#include "options.h"
-#include "pacing.h"
-#include "pack_file.h"
-#include "report.h"
+#include "player.h"
 #include "sinks/output.h"
-#include "verify.h"
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #define PAGE 4096 /* devices that share host memory want the framebuffer on a page */
-
-/* Everything that a run holds. */
-typedef struct player {
-    const play_options *options;
-    pack_file pack;
-    vit_open_info info;
-    vit_requirements need;
-    uint32_t first, end; /* frames of a round, checked against the pack */
-    uint64_t all;        /* frames of all rounds */
-    void *arena, *pixels;
-    vit *v;
-    void *sink; /* the sink's state */
-    bool sink_is_open;
-    report report;
-    verdict verdict;
-    pacing pacing;
-    uint64_t done; /* frames that were rendered, checked and written */
-} player;
 
 /* The one variable of the program: set by Ctrl-C and SIGTERM, read between frames. */
 static volatile sig_atomic_t stop_requested;
@@ -115,6 +93,21 @@ static vit_status open_sink(player *p, vit_text *why) {
     return status;
 }
 
+/* A progress line would run through printed lines if both go to the terminal. */
+static bool has_progress(const play_options *o) {
+    return !o->quiet && isatty(STDERR_FILENO) && !o->trace && !(o->hash && isatty(STDOUT_FILENO));
+}
+
+static bool is_timed(const play_options *o) {
+    return o->report || o->report_file != NULL || o->has_budget;
+}
+
+/* Devices do some of their work at the first frame only, such as compiling: where times are asked for, one frame comes before
+ * them. */
+static vit_status warm_up(player *p, vit_text *why) {
+    return is_timed(p->options) ? vit_frame(p->v, p->first, p->pixels, p->need.frame_bytes / p->need.height, why) : VIT_OK;
+}
+
 /* The sink comes last: it may empty a file, so by then nothing else should fail. */
 static vit_status open_all(player *p, vit_text *why) {
     const play_options *o = p->options;
@@ -130,10 +123,10 @@ static vit_status open_all(player *p, vit_text *why) {
     p->verdict = (verdict){.compare = o->verify, .print = o->hash};
     if (status == VIT_OK)
         status = verdict_begin(&p->verdict, p->v, p->first, p->end, why);
-    /* A progress line would run through printed lines if both go to the terminal. */
-    bool progress = !o->quiet && isatty(STDERR_FILENO) && !o->trace && !(o->hash && isatty(STDOUT_FILENO));
     if (status == VIT_OK)
-        status = report_begin(&p->report, p->all, o->report ? p->need.pass_count : 0, progress, why);
+        status = warm_up(p, why);
+    if (status == VIT_OK)
+        status = report_begin(&p->report, p->all, is_timed(o) ? p->need.pass_count : 0, has_progress(o), why);
     p->pacing = (pacing){.fps = o->pace ? (double)p->need.fps : 0};
     if (status == VIT_OK)
         status = open_sink(p, why);
@@ -168,32 +161,7 @@ static vit_status play_frames(player *p, vit_text *why) {
     return status;
 }
 
-/* What is said at the end, also of a run that was interrupted. */
-static vit_status conclude(player *p, vit_text *why) {
-    const play_options *o = p->options;
-    vit_statistics s;
-    vit_status status = vit_stats(p->v, &s, why);
-    if (status != VIT_OK)
-        return status;
-    FILE *to = o->hash || sink_uses_stdout(o->sink, o->target) ? stderr : stdout;
-    if (o->report)
-        report_print(&p->report, &p->need, &s, p->pacing.late, o->pace, to);
-    report_dropped(&s, stderr);
-    if (p->done < p->all)
-        return play_fail(why, VIT_FAILED, "interrupted at frame %u", p->first + (uint32_t)(p->done % (p->end - p->first)));
-    status = verdict_end(&p->verdict, why);
-    if (status == VIT_OK && !o->quiet && !o->trace) {
-        if (p->pacing.late > 0)
-            (void)fprintf(stderr, "%" PRIu64 " frames were late\n", p->pacing.late);
-        report_summary(&p->report,
-                       o->verify                 ? "; every hash is the pack's"
-                       : o->out_given || o->hash ? ""
-                                                 : "; none kept (no --out)",
-                       stderr);
-    }
-    return status;
-}
-
+/* The round of frames, and how many the sink took. */
 static vit_status play(player *p, vit_text *why) {
     vit_status status = open_all(p, why);
     if (status == VIT_OK)
@@ -206,11 +174,34 @@ static vit_status play(player *p, vit_text *why) {
             status = play_fail(why, closed, "%s", late.text);
     }
     if (status == VIT_OK)
-        status = conclude(p, why);
+        status = vit_stats(p->v, &p->last, why);
     vit_close(p->v);
+    return status;
+}
+
+/* Times and frames first, from a vit that does not count; then the work. */
+static vit_status play_and_count(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    vit_status status = options_plays(o) ? play(p, why) : VIT_OK;
+    if (status == VIT_OK && options_counts(o) && !stop_requested)
+        status = work_count(&p->info, p->first, p->end, has_progress(o), &stop_requested, &p->work, why);
+    if (status == VIT_OK)
+        status = conclude(p, why);
     report_free(&p->report);
     free(p->pixels);
     free(p->arena);
+    return status;
+}
+
+/* What can be wrong with budgets shows before the first frame. */
+static vit_status check_budgets(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    vit_status status = o->has_budget ? budget_check_names(&o->budget, &p->need, why) : VIT_OK;
+    if (status == VIT_OK && o->work_budget != NULL)
+        status = work_budget_read(o->work_budget, &p->limit, why);
+    if (status == VIT_OK && o->work_budget != NULL)
+        status = work_budget_check_frames(&p->limit, p->first, p->end, options_view_name(o->view),
+                                          options_format_name(o->format), why);
     return status;
 }
 
@@ -228,7 +219,7 @@ static vit_status run_pack(player *p, vit_text *why) {
                               .group = o->group,
                               .format = o->format,
                               .view = o->view,
-                              .profile = o->report,
+                              .profile = is_timed(o),
                               .max_nodes = o->max_nodes,
                               .max_list = o->max_list};
     status = require(p, why);
@@ -239,7 +230,9 @@ static vit_status run_pack(player *p, vit_text *why) {
     if (status == VIT_OK)
         status = check_frames(p, why);
     if (status == VIT_OK)
-        status = play(p, why);
+        status = check_budgets(p, why);
+    if (status == VIT_OK)
+        status = play_and_count(p, why);
     return status;
 }
 
@@ -257,6 +250,7 @@ static vit_status run(const play_options *o, vit_text *why) {
     player p = {.options = o};
     vit_status status = run_pack(&p, why);
     pack_file_unmap(&p.pack);
+    work_budget_free(&p.limit);
     return status;
 }
 

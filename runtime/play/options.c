@@ -1,12 +1,9 @@
 /* One table holds the options: parser and --help are made from it. Adding an option is adding a row. */
-#include "options.h"
+#include "option_values.h"
 #include "failure.h"
 #include <stddef.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
-
-typedef vit_status set_fn(play_options *o, const char *value, vit_text *why);
 
 /* What a row does: sets a flag, a number within bounds, or calls `set`. */
 typedef struct option {
@@ -18,127 +15,6 @@ typedef struct option {
     set_fn *set;          /* not NULL: neither flag nor plain number */
 } option;
 
-static const char *const format_names[] = {
-    [VIT_FORMAT_XRGB8888] = "xrgb8888",
-    [VIT_FORMAT_RGB565] = "rgb565",
-    [VIT_FORMAT_RGBA32F] = "rgba32f",
-};
-static const char *const format_meanings[] = {
-#define X(name, bytes, meaning) [VIT_FORMAT_##name] = meaning,
-    VIT_FORMATS(X)
-#undef X
-};
-#define FORMAT_COUNT (sizeof format_names / sizeof format_names[0])
-
-static const char *const view_names[] = {
-#define X(name, meaning) #name,
-    VIT_VIEWS(X)
-#undef X
-};
-static const char *const view_meanings[] = {
-#define X(name, meaning) meaning,
-    VIT_VIEWS(X)
-#undef X
-};
-#define VIEW_COUNT (sizeof view_names / sizeof view_names[0])
-
-/* Decimal digits only, up to *end; false on overflow, sign, space or nothing at all. */
-static bool read_number(const char *text, const char *end, uint32_t *out) {
-    uint64_t value = 0;
-    if (text == end)
-        return false;
-    for (; text != end; text++) {
-        if (*text < '0' || *text > '9')
-            return false;
-        value = value * 10 + (uint64_t)(*text - '0');
-        if (value > UINT32_MAX)
-            return false;
-    }
-    *out = (uint32_t)value;
-    return true;
-}
-
-static vit_status set_out(play_options *o, const char *value, vit_text *why) {
-    const char *colon = strchr(value, ':');
-    size_t length = colon != NULL ? (size_t)(colon - value) : strlen(value);
-    const sink_kind *kind = NULL;
-    for (uint32_t i = 0; sink_at(i) != NULL && kind == NULL; i++)
-        if (strlen(sink_at(i)->name) == length && strncmp(sink_at(i)->name, value, length) == 0)
-            kind = sink_at(i);
-    if (kind == NULL)
-        return play_fail(why, VIT_USAGE, "--out: unknown kind '%.*s' (null, raw, y4m, ppm or png)", (int)length, value);
-    if (kind->target == NULL && colon != NULL)
-        return play_fail(why, VIT_USAGE, "--out %s takes no target, got '%s'", kind->name, value);
-    if (kind->target != NULL && (colon == NULL || colon[1] == '\0'))
-        return play_fail(why, VIT_USAGE, "--out %s needs a target: %s:%s", kind->name, kind->name, kind->target);
-    o->sink = kind;
-    o->target = colon != NULL ? colon + 1 : "";
-    o->out_given = true;
-    return VIT_OK;
-}
-
-static vit_status set_frames(play_options *o, const char *value, vit_text *why) {
-    const char *colon = strchr(value, ':'), *end = value + strlen(value);
-    uint32_t first = 0, last = UINT32_MAX;
-    bool good, to_the_end = colon != NULL && colon + 1 == end;
-    if (colon == NULL) {
-        good = read_number(value, end, &first) && first < UINT32_MAX;
-        last = good ? first + 1 : 0;
-    } else {
-        bool has_first = colon != value;
-        good = (has_first || !to_the_end) && (!has_first || read_number(value, colon, &first)) &&
-               (to_the_end || read_number(colon + 1, end, &last));
-    }
-    if (!good)
-        return play_fail(why, VIT_USAGE, "--frames takes A:B, A:, :B or N (frames from 0), got '%s'", value);
-    if (first >= last)
-        return play_fail(why, VIT_USAGE, "--frames %s: no frame is in it (A:B is A up to but not including B)", value);
-    o->first = first;
-    o->end = to_the_end ? 0 : last;
-    return VIT_OK;
-}
-
-static vit_status set_view(play_options *o, const char *value, vit_text *why) {
-    for (size_t i = 0; i < VIEW_COUNT; i++)
-        if (strcmp(view_names[i], value) == 0) {
-            o->view = (vit_view)i;
-            return VIT_OK;
-        }
-    return play_fail(why, VIT_USAGE, "--view: unknown view '%s' (--help lists them)", value);
-}
-
-static vit_status set_format(play_options *o, const char *value, vit_text *why) {
-    for (size_t i = 0; i < FORMAT_COUNT; i++)
-        if (strcasecmp(format_names[i], value) == 0) {
-            o->format = (vit_format)i;
-            return VIT_OK;
-        }
-    return play_fail(why, VIT_USAGE, "--format: unknown format '%s' (xrgb8888, rgb565 or rgba32f)", value);
-}
-
-static vit_status set_lanes(play_options *o, const char *value, vit_text *why) {
-    uint32_t n;
-    if (!read_number(value, value + strlen(value), &n) || (n != 0 && n != 1 && n != 8 && n != 16))
-        return play_fail(why, VIT_USAGE, "--lanes takes 0, 1, 8 or 16, got '%s'", value);
-    o->lanes = n;
-    return VIT_OK;
-}
-
-static vit_status set_group(play_options *o, const char *value, vit_text *why) {
-    uint32_t n;
-    if (!read_number(value, value + strlen(value), &n) || n > 256 || (n & (n - 1)) != 0)
-        return play_fail(why, VIT_USAGE, "--group takes 0 or a power of two up to 256, got '%s'", value);
-    o->group = n;
-    return VIT_OK;
-}
-
-/* Taken here, refused in main.c: the message names the pack's own size. */
-static vit_status set_size(play_options *o, const char *value, vit_text *why) {
-    (void)why;
-    o->size = value;
-    return VIT_OK;
-}
-
 #define FLAG(name, field, meaning)                                                                                             \
     { name, NULL, meaning, offsetof(play_options, field), 0, 0, NULL }
 #define NUMBER(name, field, least, meaning)                                                                                    \
@@ -147,24 +23,33 @@ static vit_status set_size(play_options *o, const char *value, vit_text *why) {
     { name, value, meaning, 0, 0, 0, set }
 
 static const option table[] = {
-    WORD("out", "KIND:TARGET", set_out, "where frames go; see Sinks (default: null)"),
-    WORD("frames", "A:B", set_frames, "frames A up to but not including B; also A: and :B and a single N (default: all)"),
+    WORD("out", "KIND:TARGET", option_set_out, "where frames go; see Sinks (default: null)"),
+    WORD("frames", "A:B", option_set_frames,
+         "frames A up to but not including B; also A: and :B and a single N (default: all)"),
     NUMBER("loop", loop, 1, "play the range N times (default: 1)"),
     FLAG("fps", pace, "play at the pack's rate and count late frames (default: as fast as possible)"),
     FLAG("verify", verify, "compare each frame's hash with the pack's golden hash"),
     FLAG("hash", hash, "print one line a frame: index and hash"),
     FLAG("trace", trace, "print one line a pass and frame: index, pass, hash of what it wrote"),
-    FLAG("report", report, "at the end: time a pass, memory a buffer, work of the last frame"),
+    WORD("report", "[FILE.json]", option_set_report,
+         "at the end: times a pass and memory a buffer as a table; in a file, work too"),
+    FLAG("count-work", count_work, "count each pass's work exactly, in a round of its own; see Work"),
+    WORD("budget", "MS", option_set_budget,
+         "exit 3 if the frame, seen from the host, takes longer; PASS=MS for a pass; 5,resolve=1 for both"),
+    WORD("budget-percentile", "P", option_set_percentile, "which frame the budget is for: 50, 95, 99 or max (default: 95)"),
+    WORD("work-budget", "FILE", option_set_work_budget, "exit 3 if a pass does more work than the file allows"),
+    WORD("write-work-budget", "FILE", option_set_write_work_budget, "write such a file: the exact work of the frames played"),
     FLAG("explain", explain, "what the pack asks for: effects, passes, buffers, bytes; needs no device"),
-    WORD("view", "NAME", set_view, "what the frames show; see Views (default: final)"),
-    WORD("format", "NAME", set_format, "pixels of null and raw; see Formats (default: xrgb8888)"),
+    WORD("view", "NAME", option_set_view, "what the frames show; see Views (default: final)"),
+    WORD("format", "NAME", option_set_format, "pixels of null and raw; see Formats (default: xrgb8888)"),
     FLAG("list-devices", list_devices, "index and name of each device"),
     NUMBER("device", device, 0, "play on device N of --list-devices (default: 0)"),
-    WORD("lanes", "N", set_lanes, "samples a work-item: 1, 8, 16, or 0 for what suits; changes no bit"),
-    WORD("group", "N", set_group, "work-items a work-group: a power of two up to 256, or 0 for what suits; changes no bit"),
+    WORD("lanes", "N", option_set_lanes, "samples a work-item: 1, 8, 16, or 0 for what suits; changes no bit"),
+    WORD("group", "N", option_set_group,
+         "work-items a work-group: a power of two up to 256, or 0 for what suits; changes no bit"),
     NUMBER("max-nodes", max_nodes, 1, "replace the pack's bound of hierarchy nodes (tests)"),
     NUMBER("max-list", max_list, 1, "replace the pack's bound of list entries (tests)"),
-    WORD("size", "WxH", set_size, "always refused: the size is fixed by the pack"),
+    WORD("size", "WxH", option_set_size, "always refused: the size is fixed by the pack"),
     FLAG("quiet", quiet, "no progress, no summary; errors and what was asked for remain"),
     FLAG("version", version, "print the version"),
     FLAG("help", help, "print this page"),
@@ -187,7 +72,7 @@ static vit_status apply(const option *row, play_options *o, const char *value, v
         return VIT_OK;
     }
     uint32_t n;
-    if (!read_number(value, value + strlen(value), &n) || n < row->least || n > row->most)
+    if (!option_number(value, value + strlen(value), &n) || n < row->least || n > row->most)
         return play_fail(why, VIT_USAGE, "--%s takes a number from %u to %u, got '%s'", row->name, row->least, row->most,
                          value);
     *(uint32_t *)field = n;
@@ -199,6 +84,12 @@ static vit_status set_pack(play_options *o, const char *path, vit_text *why) {
         return play_fail(why, VIT_USAGE, "one pack at a time: '%s' and '%s'", o->pack, path);
     o->pack = path;
     return VIT_OK;
+}
+
+/* A value that may be left out is the next word only if it looks like one. */
+static bool ends_in_json(const char *word) {
+    size_t length = word != NULL ? strlen(word) : 0;
+    return length > 5 && strcmp(word + length - 5, ".json") == 0;
 }
 
 /* `argument` begins with "--"; *next is what follows it, and is taken if the option wants a value and has no '='. */
@@ -213,6 +104,8 @@ static vit_status read_option(const char *argument, char ***next, play_options *
     if (row->value == NULL)
         return apply(row, o, NULL, why);
     const char *value = equals != NULL ? equals + 1 : **next;
+    if (row->value[0] == '[' && equals == NULL && !ends_in_json(value))
+        return apply(row, o, NULL, why);
     if (value == NULL)
         return play_fail(why, VIT_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->value);
     if (equals == NULL)
@@ -232,6 +125,10 @@ static vit_status check(const play_options *o, vit_text *why) {
                          options_format_name(o->format));
     if (o->trace && (o->verify || o->hash || o->report || o->pace || o->sink != sink_at(0)))
         return play_fail(why, VIT_USAGE, "--trace plays alone: without --verify, --hash, --report, --fps and --out");
+    if (o->trace && (o->report_file != NULL || o->has_budget || options_counts(o)))
+        return play_fail(why, VIT_USAGE, "--trace plays alone: without --report, --count-work and budgets");
+    if (o->percentile != 0 && !o->has_budget)
+        return play_fail(why, VIT_USAGE, "--budget-percentile needs a --budget");
     if (o->hash && to_stdout)
         return play_fail(why, VIT_USAGE, "--hash and --out %s:- both want stdout", o->sink->name);
     if (to_stdout && !o->explain && isatty(STDOUT_FILENO))
@@ -262,8 +159,14 @@ vit_status options_parse(int argc, char **argv, play_options *out, vit_text *why
     return check(out, why);
 }
 
-const char *options_format_name(vit_format format) {
-    return format_names[format];
+bool options_counts(const play_options *o) {
+    return o->count_work || o->report_file != NULL || o->work_budget != NULL || o->write_work_budget != NULL;
+}
+
+bool options_plays(const play_options *o) {
+    bool asked =
+        o->out_given || o->verify || o->hash || o->report || o->report_file != NULL || o->has_budget || o->pace || o->trace;
+    return asked || !options_counts(o);
 }
 
 static void help_names(FILE *to, const char *title, const char *const *names, const char *const *meanings, size_t count) {
@@ -279,7 +182,7 @@ void options_help(FILE *to) {
                 to);
     for (size_t i = 0; i < OPTION_COUNT; i++) {
         (void)snprintf(left, sizeof left, "--%s %s", table[i].name, table[i].value != NULL ? table[i].value : "");
-        (void)fprintf(to, "  %-22s %s\n", left, table[i].meaning);
+        (void)fprintf(to, "  %-24s %s\n", left, table[i].meaning);
     }
     (void)fputs("\nSinks (--out)\n", to);
     for (uint32_t i = 0; sink_at(i) != NULL; i++) {
@@ -288,14 +191,24 @@ void options_help(FILE *to) {
                        kind->target != NULL ? kind->target : "");
         (void)fprintf(to, "  %-22s %s\n", left, kind->meaning);
     }
-    help_names(to, "Views (--view)", view_names, view_meanings, VIEW_COUNT);
-    help_names(to, "Formats (--format)", format_names, format_meanings, FORMAT_COUNT);
-    (void)fputs("\nExamples\n"
+    help_names(to, "Views (--view)", option_view_names, option_view_meanings, VIEW_COUNT);
+    help_names(to, "Formats (--format)", option_format_names, option_format_meanings, FORMAT_COUNT);
+    (void)fputs("\nWork\n"
+                "  Rays, tests, photon-cluster pairs, evaluations, texture lookups and bytes a pass, as exact numbers that are "
+                "equal on\n"
+                "  every device, at any lanes, groups and threads. Counted in a round of its own, since counting takes time: "
+                "times and\n"
+                "  frames are of a round without it, which is left out if nothing but counts is asked for.\n"
+                "\nExamples\n"
                 "  vitrine-play scene.vit --out png:frames --frames 0:24\n"
                 "  vitrine-play scene.vit --out y4m:- | ffmpeg -i - scene.mp4\n"
                 "  vitrine-play scene.vit --out y4m:- --fps --loop 10 | mpv -\n"
                 "  vitrine-play scene.vit --verify && echo the same bits\n"
                 "  vitrine-play scene.vit --report --device 1\n"
+                "  vitrine-play scene.vit --budget 33 --report times.json\n"
+                "  vitrine-play scene.vit --budget visibility=5,33 --budget-percentile 99\n"
+                "  vitrine-play scene.vit --write-work-budget scene.work\n"
+                "  vitrine-play scene.vit --work-budget scene.work\n"
                 "  vitrine-play scene.vit --view clusters --frames 12 --out png:insides\n"
                 "\nExit codes\n",
                 to);

@@ -2,6 +2,7 @@
 #ifndef VIT_PLAY_OPTIONS_H
 #define VIT_PLAY_OPTIONS_H
 
+#include "budget.h"
 #include "vitrine.h"
 #include "sinks/sink.h"
 #include <stdio.h>
@@ -17,6 +18,12 @@ typedef struct play_options {
     vit_format format;
     uint32_t device, lanes, group, max_nodes, max_list; /* as in vit_open_info */
     const char *size;                                   /* not NULL: was asked for, and will be refused */
+    const char *report_file;                            /* NULL: no JSON */
+    budget budget;                                      /* with has_budget */
+    bool has_budget;
+    unsigned percentile;                         /* 50, 95, 99 or 100 (maximum); 0: not given */
+    const char *work_budget, *write_work_budget; /* NULL: not asked for */
+    bool count_work;
     bool verify, hash, trace, pace, report, explain, list_devices, quiet, version, help;
 } play_options;
 
@@ -26,7 +33,12 @@ vit_status options_parse(int argc, char **argv, play_options *out, vit_text *why
 /* The whole page: synopsis, options, sinks, views, formats, examples, exit codes. */
 void options_help(FILE *to);
 
-/* Lower-case name, as --format takes it. */
+/* Is work to be counted; are frames wanted for anything but their work? */
+bool options_counts(const play_options *o);
+bool options_plays(const play_options *o);
+
+/* Lower-case name, as --format takes it; name, as --view does. */
 const char *options_format_name(vit_format format);
+const char *options_view_name(vit_view view);
 
 #endif

@@ -4,7 +4,6 @@
 #include "vitrine_pack.h" /* VIT_EFFECTS, the one list of effects; nothing else of the pack is looked at */
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define ROOM_MAX 4096           /* frames that medians are over, at most */
 #define PROGRESS_EVERY_MS 100.0 /* a terminal needs no more */
@@ -57,36 +56,40 @@ void report_progress_clear(report *r) {
     r->drawn_ms = 0;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+size_t report_timed(const report *r) {
+    return r->frames < r->room ? (size_t)r->frames : r->room;
 }
 
-/* Median of one column of times: a frame that the system disturbed does not move it. */
-static double median(const report *r, const double *column) {
-    size_t n = r->frames < r->room ? (size_t)r->frames : r->room;
-    if (n == 0)
-        return 0;
-    memcpy(r->sorted, column, n * sizeof *column);
-    qsort(r->sorted, n, sizeof *r->sorted, by_size);
-    return (r->sorted[(n - 1) / 2] + r->sorted[n / 2]) / 2;
+times report_frame_times(const report *r) {
+    return times_of(r->frame_ms, report_timed(r), r->sorted);
+}
+
+times report_pass_times(const report *r, uint32_t pass) {
+    return times_of(r->pass_ms + (size_t)pass * r->room, report_timed(r), r->sorted);
 }
 
 static double mib(uint64_t bytes) {
     return (double)bytes / (1024.0 * 1024.0);
 }
 
+static void print_times(const char *name, const times *t, FILE *to) {
+    (void)fprintf(to, "%-28s %10.3f %10.3f %10.3f %10.3f %10.3f", name, t->p50, t->p95, t->p99, t->max, t->mad);
+}
+
 static void print_passes(const report *r, const vit_requirements *need, FILE *to) {
     double sum = 0;
     for (uint32_t i = 0; i < r->passes; i++)
-        sum += median(r, r->pass_ms + (size_t)i * r->room);
-    (void)fprintf(to, "%-28s %12s %7s\n", "pass", "median ms", "share");
+        sum += report_pass_times(r, i).p50;
+    (void)fprintf(to, "%-28s %10s %10s %10s %10s %10s %7s\n", "pass, ms", "median", "p95", "p99", "max", "deviation", "share");
     for (uint32_t i = 0; i < r->passes; i++) {
-        double ms = median(r, r->pass_ms + (size_t)i * r->room);
-        (void)fprintf(to, "%-28s %12.3f %6.1f%%\n", need->passes[i], ms, sum > 0 ? 100 * ms / sum : 0);
+        times t = report_pass_times(r, i);
+        print_times(need->passes[i], &t, to);
+        (void)fprintf(to, " %6.1f%%\n", sum > 0 ? 100 * t.p50 / sum : 0);
     }
-    (void)fprintf(to, "%-28s %12.3f\n", "sum of passes", sum);
-    (void)fprintf(to, "%-28s %12.3f\n\n", "frame, seen from the host", median(r, r->frame_ms));
+    times frame = report_frame_times(r);
+    (void)fprintf(to, "%-28s %10.3f\n", "sum of passes", sum);
+    print_times("frame, seen from the host", &frame, to);
+    (void)fputs("\n\n", to);
 }
 
 static void print_buffers(const vit_requirements *need, FILE *to) {
@@ -115,7 +118,7 @@ void report_print(const report *r, const vit_requirements *need, const vit_stati
 void report_summary(const report *r, const char *end, FILE *to) {
     double seconds = (pacing_now_ms() - r->began_ms) * 1e-3;
     (void)fprintf(to, "%" PRIu64 " %s in %.2f s, %.2f ms a frame (median)%s\n", r->frames, r->frames == 1 ? "frame" : "frames",
-                  seconds, median(r, r->frame_ms), end);
+                  seconds, report_frame_times(r).p50, end);
 }
 
 void report_dropped(const vit_statistics *s, FILE *to) {

@@ -2,6 +2,7 @@
 #ifndef VIT_PLAY_REPORT_H
 #define VIT_PLAY_REPORT_H
 
+#include "times.h"
 #include "vitrine.h"
 #include <stdbool.h>
 #include <stdio.h>
@@ -28,6 +29,11 @@ void report_free(report *r);
 /* Frame `done` of `all` is finished; drawn a few times a second. report_progress_clear() makes room for other text. */
 void report_progress(report *r, uint64_t done, uint64_t all);
 void report_progress_clear(report *r);
+
+/* Frames that times are of, at most the last 4096; what their times say, ms: seen from the host, and of a pass. */
+size_t report_timed(const report *r);
+times report_frame_times(const report *r);
+times report_pass_times(const report *r, uint32_t pass);
 
 /* --report: time a pass, memory a buffer, work of the last frame. */
 void report_print(const report *r, const vit_requirements *need, const vit_statistics *s, uint64_t late, bool paced, FILE *to);

@@ -102,7 +102,6 @@
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
     X(META, huge_max_list, "max_list", im->scene->max_list = 0xffffffff)                                                       \
     X(META, huge_slice_first, "slice_first", im->scene->slice_first = 0xffffffff)                                              \
-    X(META, leaf_words_in_use, "reserved", im->scene->leaf_words = 1)                                                          \
     X(META, reserved_in_use, "reserved", im->scene->reserved[3] = 1)                                                           \
     X(CAMS, one_frame_more, "META counts 3 records", ADD(frames, 1))                                                           \
     X(LITE, one_light_more, "META counts 6 records", ADD(lights, 1))                                                           \

@@ -97,7 +97,7 @@ static void the_first_hit_is_left_to_direct_light(void **state) {
 static void a_point_light_shines_evenly_in_all_directions(void **state) {
     (void)state;
     enum { BANDS = 6, SECTORS = 8, PATHS = 48 * 500 };
-    int cells[BANDS][SECTORS] = {{0}};
+    int bins[BANDS][SECTORS] = {{0}};
     room *r = room_closed(0.5f);
     r->lights[0] = room_point_light(0.0f, 0.0f, 0.0f, PATHS);
     room_finish(r, 1, 2);
@@ -110,11 +110,11 @@ static void a_point_light_shines_evenly_in_all_directions(void **state) {
         const double height = at[1] / sqrt(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]),
                      turn = atan2(at[2], at[0]) / (2.0 * PI);
         const int band = (int)((height + 1.0) / 2.0 * BANDS), sector = (int)((turn + 0.5) * SECTORS);
-        cells[band < BANDS ? band : BANDS - 1][sector < SECTORS ? sector : SECTORS - 1]++;
+        bins[band < BANDS ? band : BANDS - 1][sector < SECTORS ? sector : SECTORS - 1]++;
     }
     double chi2 = 0.0;
     for (int c = 0; c < BANDS * SECTORS; c++)
-        chi2 += pow(cells[c / SECTORS][c % SECTORS] - 500.0, 2.0) / 500.0;
+        chi2 += pow(bins[c / SECTORS][c % SECTORS] - 500.0, 2.0) / 500.0;
     assert_true(chi2 < 72.4); /* 1 % quantile of 47 degrees of freedom; stratified paths stay far below */
     free(photons);
     room_drop(r);

@@ -9,7 +9,7 @@ static const char frame_zero[] =
     "kernel void photon_paths_of_frame_0(RAY_SCENE_PARAMETERS, global const vit_light *lights,\n"
     "                                    global vit_photon *photons, volatile global uint *counters)\n"
     "{\n"
-    "    photon_paths(RAY_SCENE, lights, 0u, photons, counters);\n"
+    "    photon_paths(RAY_SCENE, lights, 0u, (global const uint *)0, (global const uint *)0, photons, counters);\n"
     "}\n";
 
 /* The lights of `r` as moving ones, traced by kernels/photons.cl: all slots, all lights side by side. */

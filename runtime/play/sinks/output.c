@@ -79,28 +79,43 @@ vit_status output_folder(const char *path, vit_text *why) {
     return make_one(partial, why);
 }
 
-vit_status output_frame_file(const char *folder, uint32_t index, const char *extension, const void *bytes, size_t size,
-                             vit_text *why) {
-    char path[PATH_SIZE], partial[PATH_SIZE + sizeof ".part"];
-    int length = snprintf(path, sizeof path, "%s/frame_%05u.%s", folder, index, extension);
-    if (length < 0 || (size_t)length >= sizeof path)
-        return failed(folder, ENAMETOOLONG, why);
-    (void)snprintf(partial, sizeof partial, "%s.part", path);
-
+static vit_status write_all(const char *path, const void *bytes, size_t size, vit_text *why) {
     output file;
-    vit_status status = output_open(partial, &file, why);
+    vit_status status = output_open(path, &file, why);
     if (status != VIT_OK)
         return status;
     status = output_write(&file, bytes, size, why);
     vit_text unused;
     vit_status closed = output_close(&file, status == VIT_OK ? why : &unused);
-    if (status == VIT_OK)
-        status = closed;
+    return status == VIT_OK ? closed : status;
+}
+
+static vit_status write_and_rename(const char *path, const void *bytes, size_t size, vit_text *why) {
+    char partial[PATH_SIZE + sizeof ".part"];
+    if (strlen(path) >= PATH_SIZE)
+        return failed(path, ENAMETOOLONG, why);
+    (void)snprintf(partial, sizeof partial, "%s.part", path);
+    vit_status status = write_all(partial, bytes, size, why);
     if (status == VIT_OK && rename(partial, path) != 0)
         status = failed(path, errno, why);
     if (status != VIT_OK)
         (void)unlink(partial);
     return status;
+}
+
+vit_status output_frame_file(const char *folder, uint32_t index, const char *extension, const void *bytes, size_t size,
+                             vit_text *why) {
+    char path[PATH_SIZE];
+    int length = snprintf(path, sizeof path, "%s/frame_%05u.%s", folder, index, extension);
+    if (length < 0 || (size_t)length >= sizeof path)
+        return failed(folder, ENAMETOOLONG, why);
+    return write_and_rename(path, bytes, size, why);
+}
+
+vit_status output_file(const char *path, const void *bytes, size_t size, vit_text *why) {
+    struct stat s;
+    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) ? write_all(path, bytes, size, why)
+                                                      : write_and_rename(path, bytes, size, why);
 }
 
 vit_status output_flush_stdout(vit_text *why) {

@@ -23,6 +23,9 @@ vit_status output_folder(const char *path, vit_text *why);
 vit_status output_frame_file(const char *folder, uint32_t index, const char *extension, const void *bytes, size_t size,
                              vit_text *why);
 
+/* Writes a whole file in the same way; what is there and is no plain file (a device, a pipe) is written to in place. */
+vit_status output_file(const char *path, const void *bytes, size_t size, vit_text *why);
+
 /* Flushes what was printed to stdout and says whether all of it arrived. */
 vit_status output_flush_stdout(vit_text *why);
 

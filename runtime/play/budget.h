@@ -1,0 +1,28 @@
+/* budget.c: --budget, milliseconds that the frame or a pass may take. */
+#ifndef VIT_PLAY_BUDGET_H
+#define VIT_PLAY_BUDGET_H
+
+#include "report.h"
+
+#define BUDGET_NAME 48
+
+typedef struct budget {
+    double frame_ms; /* 0: none */
+    uint32_t count;
+    struct {
+        char name[BUDGET_NAME];
+        double ms;
+    } passes[VIT_MAX_PASSES];
+} budget;
+
+/* "MS", "PASS=MS", or several with commas between: "33", "visibility=5,33". VIT_USAGE: the text says what is wrong. */
+vit_status budget_parse(const char *text, budget *out, vit_text *why);
+/* VIT_USAGE: the pack's frames have no such pass. */
+vit_status budget_check_names(const budget *b, const vit_requirements *need, vit_text *why);
+
+/* Holds a percentile (50, 95, 99; 100: the maximum) of the frame's times, seen from the host, and of the passes' times to the
+ * budget. VIT_BUDGET: the text says what is over and by how much: the frame with its longest pass, and the first pass over its
+ * own. */
+vit_status budget_check(const budget *b, unsigned percentile, const report *r, const vit_requirements *need, vit_text *why);
+
+#endif

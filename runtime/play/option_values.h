@@ -1,0 +1,21 @@
+/* option_values.c: from the text of an option's value to a field. */
+#ifndef VIT_PLAY_OPTION_VALUES_H
+#define VIT_PLAY_OPTION_VALUES_H
+
+#include "options.h"
+
+/* Names and what they mean, in the order of vit_format and vit_view. */
+enum { FORMAT_COUNT = VIT_FORMAT_RGBA32F + 1, VIEW_COUNT = VIT_VIEW_albedo + 1 };
+extern const char *const option_format_names[FORMAT_COUNT], *const option_format_meanings[FORMAT_COUNT];
+extern const char *const option_view_names[VIEW_COUNT], *const option_view_meanings[VIEW_COUNT];
+
+/* Decimal digits only, up to *end; false on overflow, sign, space or nothing at all. */
+bool option_number(const char *text, const char *end, uint32_t *out);
+
+/* VIT_USAGE: the text says what the option takes. `value` is NULL only where it may be left out. */
+typedef vit_status set_fn(play_options *o, const char *value, vit_text *why);
+set_fn option_set_out, option_set_frames, option_set_view, option_set_format, option_set_lanes, option_set_group,
+    option_set_report, option_set_budget, option_set_percentile, option_set_work_budget, option_set_write_work_budget,
+    option_set_size;
+
+#endif

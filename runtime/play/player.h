@@ -1,0 +1,36 @@
+/* What a run of the player holds. main.c fills it, conclude.c tells about it. */
+#ifndef VIT_PLAY_PLAYER_H
+#define VIT_PLAY_PLAYER_H
+
+#include "options.h"
+#include "pacing.h"
+#include "pack_file.h"
+#include "report.h"
+#include "verify.h"
+#include "work_budget.h"
+
+typedef struct player {
+    const play_options *options;
+    pack_file pack;
+    vit_open_info info;
+    vit_requirements need;
+    uint32_t first, end; /* frames of a round, checked against the pack */
+    uint64_t all;        /* frames of all rounds */
+    void *arena, *pixels;
+    vit *v;
+    void *sink; /* the sink's state */
+    bool sink_is_open;
+    report report;
+    verdict verdict;
+    pacing pacing;
+    uint64_t done;       /* frames that were rendered, checked and written */
+    vit_statistics last; /* of the last of them */
+    work_budget limit;   /* --work-budget, read */
+    work_counts work;
+} player;
+
+/* conclude.c: tables, files and verdicts at the end, also of a run that was interrupted (VIT_FAILED). VIT_MISMATCH and
+ * VIT_BUDGET: what did not hold. */
+vit_status conclude(player *p, vit_text *why);
+
+#endif
