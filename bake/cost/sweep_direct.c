@@ -8,8 +8,8 @@
 /* Effects that direct light does not depend on. One that is missing here costs a picture more, and nothing else. */
 #define INDIRECT_EFFECTS                                                                                                       \
     (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                           \
-     VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS | VIT_EFFECT_BIT_SPARSE |              \
-     VIT_EFFECT_BIT_SPARSE_16)
+     VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS | VIT_EFFECT_BIT_ZONES |               \
+     VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE | VIT_EFFECT_BIT_SPARSE | VIT_EFFECT_BIT_SPARSE_16)
 
 /* Of all that direct light is made from. Lights differ in their photon paths alone. */
 static uint64_t key_of(const sweep_pack *pack) {
