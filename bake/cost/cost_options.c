@@ -27,7 +27,7 @@ static const option options[] = {
     {"--write", "SCENE.cfg", WORD, AT(write), 0, 0,
      "puts the choice into this file's quality block; the rest stays byte for byte"},
     {"--knobs", "A,B,...", WORD, AT(knobs), 0, 0, "turns only these (list below)"},
-    {"--settings", "N", WHOLE, AT(settings), 1, 100000, "settings tried, at most (default 64)"},
+    {"--settings", "N", WHOLE, AT(settings), 1, 100000, "settings tried, at most (default 96)"},
     {"--size", "WxH", SIZE, AT(width), 0, 0, "output size instead of the scene's"},
     {"--frame", "N", FRAME, AT(frame), 0, 99999, "frame that is compared with the reference (default: the middle one)"},
     {"--every", "N", WHOLE, AT(every), 1, 4096, "compares one pixel in N x N (default: at most 60 000 pixels)"},
@@ -120,7 +120,7 @@ static vit_status check(const cost_options *o, vit_text *why) {
 }
 
 vit_status cost_options_parse(int argc, char **argv, cost_options *out, vit_text *why) {
-    *out = (cost_options){.settings = 64, .repeats = 14, .max_samples = 4096, .frame = -1};
+    *out = (cost_options){.settings = SWEEP_SETTINGS, .repeats = SWEEP_REPEATS, .max_samples = SWEEP_SAMPLES, .frame = -1};
     for (int i = 1; i < argc; i++) {
         char wants[128];
         int k = 0;

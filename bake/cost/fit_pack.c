@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETTINGS = 64, REPEATS = 14, MOST_SAMPLES = 4096 }; /* vitrine-cost's defaults */
-
 /* 95th percentile of the milliseconds of all frames, each played at least once and at least SWEEP_LEAST_REPEATS in all. */
 static vit_status measure(const pipeline *p, const pipeline_packed *packed, const char *name, double *p95, vit_text *why) {
     const uint32_t frames = packed->plan.scene.frames, repeats = frames > SWEEP_LEAST_REPEATS ? frames : SWEEP_LEAST_REPEATS;
@@ -77,10 +75,10 @@ vit_status fit_pack(pipeline *p, const fit_budget *budget, pipeline_packed *out,
     char folder[4096];
     cost_results results;
     const sweep_input in = {.pipeline = p,
-                            .settings = SETTINGS,
+                            .settings = SWEEP_SETTINGS,
                             .frame = -1,
-                            .repeats = budget->ms > 0 ? REPEATS : 0,
-                            .max_samples = MOST_SAMPLES,
+                            .repeats = budget->ms > 0 ? SWEEP_REPEATS : 0,
+                            .max_samples = SWEEP_SAMPLES,
                             .cache = machine_cache_folder(folder, sizeof folder),
                             .memory = machine_memory()};
     memset(out, 0, sizeof *out);

@@ -1,5 +1,5 @@
-/* knobs.c: the one table of what a sweep turns, and the settings made from it. A new knob is a row of the table beside its
- * field in the quality block.
+/* knobs.c: the one table of what a sweep turns; knob_list.c: the settings made from it. A new knob is a row of the table beside
+ * its field in the quality block.
  *
  * There is no knob for a fixed-point scale: irradiance is summed by each view sample in floats and in a fixed order, so that no
  * sum across work-items, and no scale, exists. */
@@ -9,12 +9,15 @@
 #include "results.h"
 #include "scene.h"
 
+#define KNOBS_MOST 32
+
 typedef struct knob_setting {
     char name[COST_NAME]; /* "default", "radius 0.5", "photons 4250, buckets" */
     char knob[COST_NAME]; /* the one knob that differs from the default; "default"; "several" */
     scene_quality quality;
-    double scale;   /* output edge / the scene's */
-    uint32_t lanes; /* vit_open_info.lanes */
+    double scale;              /* output edge / the scene's */
+    uint32_t lanes;            /* vit_open_info.lanes */
+    uint8_t digit[KNOBS_MOST]; /* a knob: 0: as in the default; i: its value i - 1 */
 } knob_setting;
 
 typedef struct knobs_input {
@@ -24,9 +27,24 @@ typedef struct knobs_input {
     uint32_t most;    /* settings, >= 1 */
 } knobs_input;
 
-/* The default, then each knob alone, value by value, then combinations, spread evenly over the product of the knobs that are
- * combined; no two alike, and the same for the same input. Caller frees *out. VIT_USAGE: `only` names no knob. */
-vit_status knobs_settings(const knobs_input *in, knob_setting **out, uint32_t *count, vit_text *why);
+/* Settings, no two alike, the same for the same calls. */
+typedef struct knob_list {
+    knob_setting *settings; /* `count` of them */
+    uint32_t count, most;
+    knob_setting base;
+    struct knob_values *values; /* what each knob can be set to */
+} knob_list;
+
+/* The default and each knob alone, value by value. VIT_USAGE: `only` names no knob. On failure nothing is left to close. */
+vit_status knobs_open(const knobs_input *in, knob_list *out, vit_text *why);
+void knobs_close(knob_list *l);
+
+/* Adds combinations until there are `upto` settings, spread evenly over the product of the knobs that are combined. */
+vit_status knobs_spread(knob_list *l, uint32_t upto, vit_text *why);
+
+/* Adds, unless it is there or the list is full, the setting that differs from settings[of] in one combined knob: number `step`
+ * of those. False: there are not so many. */
+bool knobs_beside(knob_list *l, uint32_t of, uint32_t step, vit_status *status, vit_text *why);
 
 /* False: the setting differs in the output size or in what is chosen when a pack is opened; --fit leaves it out. */
 bool knobs_in_quality(const knob_setting *s);

@@ -99,27 +99,19 @@ static vit_status make_reference(sweep *s, double target, vit_text *why) {
     return status;
 }
 
+/* Knows the settings that stand alone; sweep_search() adds the others. */
 static vit_status list_settings(sweep *s, vit_text *why) {
-    const vit_scene *c = &s->base.plan.scene;
     const scene_quality *q = &s->in->pipeline->scene.quality;
-    const knobs_input in = {.base = q, .radius = (double)c->radius, .only = s->in->knobs, .most = s->in->settings};
-    cost_results *r = s->out;
-    vit_status status = knobs_settings(&in, &s->knobs, &r->count, why);
+    const knobs_input in = {
+        .base = q, .radius = (double)s->base.plan.scene.radius, .only = s->in->knobs, .most = s->in->settings};
+    vit_status status = knobs_open(&in, &s->knobs, why);
     if (status != VIT_OK)
         return status;
-    r->settings = calloc(r->count, sizeof *r->settings);
-    s->packs = calloc(r->count, sizeof *s->packs);
-    s->indirect = calloc(r->count, sizeof *s->indirect);
-    if (!r->settings || !s->packs || !s->indirect)
-        return fail(VIT_FAILED, why, "out of memory");
-    for (uint32_t i = 0; i < r->count; i++) {
-        cost_setting *to = &r->settings[i];
-        memcpy(to->name, s->knobs[i].name, sizeof to->name);
-        memcpy(to->knob, s->knobs[i].knob, sizeof to->knob);
-        scene_quality_text(&s->knobs[i].quality, to->values, sizeof to->values);
-        to->elsewhere = !knobs_in_quality(&s->knobs[i]);
-    }
-    return VIT_OK;
+    s->out->settings = calloc(s->knobs.most, sizeof *s->out->settings);
+    s->packs = calloc(s->knobs.most, sizeof *s->packs);
+    s->indirect = calloc(s->knobs.most, sizeof *s->indirect);
+    s->directs = calloc(s->knobs.most, sizeof *s->directs);
+    return s->out->settings && s->packs && s->indirect && s->directs ? VIT_OK : fail(VIT_FAILED, why, "out of memory");
 }
 
 /* Errors mean something when the reference's own is below a tenth of the smallest: what it must fall below, 0 if it has. */
@@ -154,7 +146,7 @@ static vit_status compare(sweep *s, vit_text *why) {
         if (spread_any(status != VIT_OK))
             return status != VIT_OK ? status : fail(VIT_FAILED, why, "another rank failed");
         if (first_rank && round == 0)
-            status = sweep_pictures(s, why);
+            status = sweep_search(s, why);
         if (first_rank && status == VIT_OK)
             status = sweep_errors(s, why);
         target = first_rank && status == VIT_OK ? better_target(s) : 0;
@@ -194,12 +186,10 @@ static vit_status run(sweep *s, vit_text *why) {
     spread_end(); /* the other ranks must not take time from what is timed */
     if (status != VIT_OK || !first_rank)
         return status;
-    status = sweep_compare_direct(s, why);
-    if (status == VIT_OK) {
-        progress_end(s->progress);
-        say_reference(s);
-    }
-    if (status == VIT_OK && s->in->repeats > 0)
+    sweep_compare_direct(s);
+    progress_end(s->progress);
+    say_reference(s);
+    if (s->in->repeats > 0)
         status = sweep_times(s, why);
     if (status == VIT_OK)
         front_mark(s->out);
@@ -217,9 +207,12 @@ vit_status sweep_run(const sweep_input *in, cost_results *out, vit_text *why) {
         if (s.indirect)
             free(s.indirect[i]);
     }
+    for (uint32_t i = 0; i < s.direct_count; i++)
+        free(s.directs[i].image);
+    free(s.directs);
     free(s.packs);
     free(s.indirect);
-    free(s.knobs);
+    knobs_close(&s.knobs);
     free(s.direct_only);
     pipeline_packed_free(&s.base);
     if (status != VIT_OK)

@@ -6,7 +6,10 @@
 #include "results.h"
 #include <signal.h>
 
-#define SWEEP_FRAMES 7 /* frames of the path that are played, evenly spread, the compared one among them */
+#define SWEEP_FRAMES 7    /* frames of the path that are played, evenly spread, the compared one among them */
+#define SWEEP_SETTINGS 96 /* what the tools take if nothing is said: settings, frames timed, paths a pixel */
+#define SWEEP_REPEATS 14
+#define SWEEP_SAMPLES 4096
 #define SWEEP_LEAST_REPEATS 7
 #define SWEEP_GRID 60000 /* grid points, at most, if `every` is left open */
 

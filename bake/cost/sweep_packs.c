@@ -19,7 +19,7 @@ static int scaled(int edge, double scale) {
 
 vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why) {
     pipeline *p = s->in->pipeline;
-    const knob_setting *k = &s->knobs[i];
+    const knob_setting *k = &s->knobs.settings[i];
     sweep_pack *pack = &s->packs[i];
     if (pack->bytes)
         return VIT_OK;
@@ -52,7 +52,7 @@ static vit_open_info how(const sweep *s, uint32_t i) {
     return (vit_open_info){.pack = s->packs[i].bytes,
                            .pack_size = s->packs[i].size,
                            .device = s->in->pipeline->device,
-                           .lanes = s->knobs[i].lanes};
+                           .lanes = s->knobs.settings[i].lanes};
 }
 
 static void note_work(cost_results *r, cost_setting *c, const vit_statistics *t) {
@@ -69,15 +69,16 @@ static void note_work(cost_results *r, cost_setting *c, const vit_statistics *t)
 /* What must have the default's bits has them. */
 static vit_status check_same(const sweep *s, uint32_t i, vit_text *why) {
     const size_t bytes = 3 * s->points * sizeof(float);
-    if (s->knobs[i].lanes == 0 || memcmp(s->out->settings[i].image, s->out->settings[0].image, bytes) == 0)
+    if (s->knobs.settings[i].lanes == 0 || memcmp(s->out->settings[i].image, s->out->settings[0].image, bytes) == 0)
         return VIT_OK;
-    return fail(VIT_MISMATCH, why, s->knobs[i].name, "its frame has other bits than the default's");
+    return fail(VIT_MISMATCH, why, s->knobs.settings[i].name, "its frame has other bits than the default's");
 }
 
 static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
     cost_setting *c = &s->out->settings[i];
     vit_requirements need;
     vit_statistics stats;
+    const float *direct;
     vit_status status = sweep_take_pack(s, i, why);
     if (status != VIT_OK)
         return status;
@@ -94,49 +95,22 @@ static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
         status = images_render(&info, s->at, &s->grid, c->image, &stats, why);
     if (status == VIT_OK)
         note_work(s->out, c, &stats);
-    info.count_work = 0;
-    info.view = VIT_VIEW_indirect;
     if (status == VIT_OK)
-        status = images_render(&info, s->at, &s->grid, s->indirect[i], NULL, why);
+        status = sweep_direct(s, i, &direct, why);
     if (status != VIT_OK)
         return fail(status, why, c->name, why->text);
+    for (size_t k = 0; k < 3 * s->points; k++)
+        s->indirect[i][k] = c->image[k] - direct[k];
     return check_same(s, i, why);
 }
 
-vit_status sweep_pictures(sweep *s, vit_text *why) {
+vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why) {
     vit_status status = VIT_OK;
-    progress_stage(s->progress, "settings: packs, pictures");
-    for (uint32_t i = 0; i < s->out->count && status == VIT_OK; i++) {
+    for (uint32_t i = first; i < s->out->count && status == VIT_OK; i++) {
         status = sweep_cancelled(s, why) ? VIT_FAILED : picture(s, i, why);
         if (s->kept > s->in->memory)
             sweep_drop_pack(s, i);
-        progress_step(s->progress, (i + 1.0) / s->out->count);
+        progress_step(s->progress, (i + 1.0) / s->knobs.most);
     }
-    return status;
-}
-
-vit_status sweep_compare_direct(sweep *s, vit_text *why) {
-    const reference *r = &s->out->reference;
-    float *image = calloc(3 * s->points, sizeof *image);
-    if (!image) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
-    }
-    vit_status status = sweep_take_pack(s, 0, why);
-    vit_open_info info = how(s, 0);
-    info.view = VIT_VIEW_direct;
-    if (status == VIT_OK)
-        status = images_render(&info, s->at, &s->grid, image, NULL, why);
-    if (status == VIT_OK) {
-        double largest = 0, sum = 0;
-        s->out->direct = metrics_compare(r->direct, image, NULL, r->width, r->height);
-        for (size_t i = 0; i < 3 * s->points; i++) {
-            const double d = (double)image[i] - r->direct[i];
-            largest = d > largest ? d : -d > largest ? -d : largest;
-            sum += r->direct[i];
-        }
-        s->out->direct_largest = sum > 0 ? largest * 3 * (double)s->points / sum : 0;
-    }
-    free(image);
     return status;
 }

@@ -12,6 +12,12 @@ typedef struct sweep_pack {
     size_t size;
 } sweep_pack;
 
+/* A picture of direct light, and what it was made from. */
+typedef struct sweep_direct_image {
+    uint64_t key;
+    float *image;
+} sweep_direct_image;
+
 typedef struct sweep {
     const sweep_input *in;
     progress *progress; /* the caller's; packs are made with a quiet one */
@@ -19,14 +25,16 @@ typedef struct sweep {
     uint32_t frames[SWEEP_FRAMES], frame_count;
     uint32_t at; /* the compared frame among frames[] */
     images_grid grid;
-    size_t points;        /* of the grid */
-    pipeline_packed base; /* the default's: the reference reads it */
-    bool *direct_only;    /* a light: photons = false */
-    reference_input truth;     /* what out->reference was made from */
-    knob_setting *knobs;  /* one a setting, as out->settings */
+    size_t points;         /* of the grid */
+    pipeline_packed base;  /* the default's: the reference reads it */
+    bool *direct_only;     /* a light: photons = false */
+    reference_input truth; /* what out->reference was made from */
+    knob_list knobs;       /* settings as out->settings */
     sweep_pack *packs;
-    uint64_t kept;    /* bytes of packs */
-    float **indirect; /* a setting: its indirect light on the grid */
+    uint64_t kept;               /* bytes of packs */
+    float **indirect;            /* a setting: its indirect light on the grid */
+    sweep_direct_image *directs; /* direct_count of at most one a setting */
+    uint32_t direct_count;
 } sweep;
 
 bool sweep_cancelled(const sweep *s, vit_text *why);
@@ -34,10 +42,17 @@ bool sweep_cancelled(const sweep *s, vit_text *why);
 /* sweep_packs.c: the pack of setting i, made again if it was not kept. */
 vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why);
 void sweep_drop_pack(sweep *s, uint32_t i);
-/* Pack, bytes, images and work of every setting. */
-vit_status sweep_pictures(sweep *s, vit_text *why);
-/* Fills out->direct from the default's direct light. */
-vit_status sweep_compare_direct(sweep *s, vit_text *why);
+/* Pack, bytes, images and work of the settings first .. out->count - 1. */
+vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why);
+/* sweep_direct.c: direct light of setting i, whose pack is there, on the grid. */
+vit_status sweep_direct(sweep *s, uint32_t i, const float **image, vit_text *why);
+/* Fills out->direct from the default's. */
+void sweep_compare_direct(sweep *s);
+
+/* sweep_search.c: fills the list of settings. First the default, each knob alone and some combinations; then, round by round,
+ * what lies beside the settings on the front of error against work, so that the front gets dense where it is. Needs a
+ * reference. */
+vit_status sweep_search(sweep *s, vit_text *why);
 
 /* sweep_times.c: ms of every setting, and the path tracer's. */
 vit_status sweep_times(sweep *s, vit_text *why);

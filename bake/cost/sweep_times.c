@@ -52,10 +52,10 @@ static vit_status batch_fill(sweep *s, batch *b, vit_text *why) {
         if (status != VIT_OK)
             return status;
         b->setting[b->count] = i;
-        b->entries[b->count] = (timing_entry){.name = s->knobs[i].name,
+        b->entries[b->count] = (timing_entry){.name = s->knobs.settings[i].name,
                                               .pack = s->packs[i].bytes,
                                               .pack_size = s->packs[i].size,
-                                              .lanes = s->knobs[i].lanes,
+                                              .lanes = s->knobs.settings[i].lanes,
                                               .ms = b->ms + b->count * repeats,
                                               .pass_ms = b->pass_ms + b->count * repeats * VIT_MAX_PASSES};
         b->count++;

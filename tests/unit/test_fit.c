@@ -59,6 +59,9 @@ static void nothing_beats_what_is_on_the_front(void **unused) {
         for (uint32_t i = 0; i < COUNT; i++) {
             assert_false(settings[i].front && (settings[i].elsewhere || dominated(i, false)));
             assert_false(settings[i].front_relmse && (settings[i].elsewhere || dominated(i, true)));
+            for (uint32_t k = 0; k < i && settings[i].front; k++) /* the first of equals alone */
+                assert_false(settings[k].front && settings[k].ms == settings[i].ms &&
+                             settings[k].total.nmse == settings[i].total.nmse);
             if (!settings[i].elsewhere && !dominated(i, false)) { /* on it, or the like of one before it */
                 bool like = settings[i].front;
                 for (uint32_t k = 0; k < i; k++)
@@ -136,12 +139,14 @@ static void work_units_are_the_weighted_sum_of_what_is_equal_everywhere(void **u
     s.pass_work[1][0] = 1;
     const uint64_t evaluations = fit_work_units(&s, names, 4);
     assert_true(evaluations > 0 && evaluations % 11 == 0);
-    s.pass_work[0][1] = 7;
-    const uint64_t both = fit_work_units(&s, names, 4);
-    assert_true(both > evaluations && (both - evaluations) % 7 == 0);
+    s.pass_work[0][1] = s.pass_work[1][1] = 7;    /* bytes of a pass that counts something else: read from caches */
     s.pass_work[0][2] = s.pass_work[0][3] = 1000; /* depends on the lane width; has no weight */
     s.pass_work[2][0] = 1000;                     /* no pass of this setting */
-    assert_int_equal(fit_work_units(&s, names, 4), both);
+    assert_int_equal(fit_work_units(&s, names, 4), evaluations);
+    s.pass_count = 3;
+    s.pass_work[2][0] = 0;
+    s.pass_work[2][1] = 9; /* a pass that only moves bytes */
+    assert_int_equal(fit_work_units(&s, names, 4), evaluations + 9);
 }
 
 static void medians_percentiles_and_deviations_are_by_rank(void **unused) {

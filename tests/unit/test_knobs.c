@@ -21,16 +21,11 @@ static int begin(void **state) {
     return scene_quality_apply("photons = 10000; bounces = 4; radius = 0.8; tile = 32", &base, &why);
 }
 
-typedef struct list {
-    knob_setting *s;
-    uint32_t count;
-} list;
-
-static list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
-    list l;
+static knob_list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
+    knob_list l;
     vit_text why = {""};
     const knobs_input in = {.base = q, .radius = radius, .only = only, .most = most};
-    if (knobs_settings(&in, &l.s, &l.count, &why) != VIT_OK)
+    if (knobs_open(&in, &l, &why) != VIT_OK || knobs_spread(&l, most, &why) != VIT_OK)
         fail_msg("%s", why.text);
     return l;
 }
@@ -43,20 +38,20 @@ static const char *text_of(const scene_quality *q) {
     return text[turn];
 }
 
-static const knob_setting *find(const list *l, const char *name) {
+static const knob_setting *find(const knob_list *l, const char *name) {
     for (uint32_t i = 0; i < l->count; i++)
-        if (strcmp(l->s[i].name, name) == 0)
-            return &l->s[i];
+        if (strcmp(l->settings[i].name, name) == 0)
+            return &l->settings[i];
     fail_msg("no setting '%s'", name);
     return NULL;
 }
 
 static void the_default_comes_first_and_each_knob_alone_changes_its_own(void **state) {
-    list l = make(&base, 0.8, NULL, 64);
+    knob_list l = make(&base, 0.8, NULL, 64);
     (void)state;
-    assert_string_equal(l.s[0].name, "default");
-    assert_string_equal(text_of(&l.s[0].quality), text_of(&base));
-    assert_true(knobs_in_quality(&l.s[0]));
+    assert_string_equal(l.settings[0].name, "default");
+    assert_string_equal(text_of(&l.settings[0].quality), text_of(&base));
+    assert_true(knobs_in_quality(&l.settings[0]));
     assert_int_equal(find(&l, "photons 2500")->quality.photons, 2500);
     assert_int_equal(find(&l, "photons 40000")->quality.photons, 40000);
     assert_true(find(&l, "radius 0.4")->quality.radius == 0.4);
@@ -70,70 +65,93 @@ static void the_default_comes_first_and_each_knob_alone_changes_its_own(void **s
     assert_true(find(&l, "size 0.5")->scale == 0.5 && !knobs_in_quality(find(&l, "size 0.5")));
     assert_true(find(&l, "lanes 8")->lanes == 8 && !knobs_in_quality(find(&l, "lanes 8")));
     for (uint32_t i = 0; i < l.count; i++) /* the default's own values are no settings of their own */
-        assert_true(strcmp(l.s[i].name, "tile 32") != 0 && strcmp(l.s[i].name, "estimate list") != 0);
-    free(l.s);
+        assert_true(strcmp(l.settings[i].name, "tile 32") != 0 && strcmp(l.settings[i].name, "estimate list") != 0);
+    knobs_close(&l);
 }
 
 static void no_two_settings_are_alike_and_the_list_is_the_same_each_time(void **state) {
-    list a = make(&base, 0.8, NULL, 80), b = make(&base, 0.8, NULL, 80);
+    knob_list a = make(&base, 0.8, NULL, 80), b = make(&base, 0.8, NULL, 80);
     (void)state;
     assert_int_equal(a.count, 80);
     assert_int_equal(b.count, 80);
     for (uint32_t i = 0; i < a.count; i++) {
-        assert_string_equal(a.s[i].name, b.s[i].name);
+        assert_string_equal(a.settings[i].name, b.settings[i].name);
         for (uint32_t k = 0; k < i; k++) {
-            assert_string_not_equal(a.s[i].name, a.s[k].name);
-            assert_true(a.s[i].scale != a.s[k].scale || a.s[i].lanes != a.s[k].lanes ||
-                        strcmp(text_of(&a.s[i].quality), text_of(&a.s[k].quality)) != 0);
+            assert_string_not_equal(a.settings[i].name, a.settings[k].name);
+            assert_true(a.settings[i].scale != a.settings[k].scale || a.settings[i].lanes != a.settings[k].lanes ||
+                        strcmp(text_of(&a.settings[i].quality), text_of(&a.settings[k].quality)) != 0);
         }
     }
-    free(a.s);
-    free(b.s);
+    knobs_close(&a);
+    knobs_close(&b);
 }
 
 static void combinations_turn_several_knobs_and_reach_all_values(void **state) {
-    list l = make(&base, 0.8, "photons,radius,estimate", 1000);
+    knob_list l = make(&base, 0.8, "photons,radius,estimate", 1000);
     uint32_t several = 0, buckets = 0, few = 0;
     (void)state;
     assert_int_equal(l.count, 5 * 7 * 3); /* the whole product: the list ends when it does */
     for (uint32_t i = 0; i < l.count; i++) {
-        const scene_quality *q = &l.s[i].quality;
+        const scene_quality *q = &l.settings[i].quality;
         const int turned = (q->photons != base.photons) + (q->radius != base.radius) + q->buckets;
-        assert_true((strcmp(l.s[i].knob, "several") == 0) == (turned >= 2));
+        assert_true((strcmp(l.settings[i].knob, "several") == 0) == (turned >= 2));
         several += turned >= 2;
     }
     assert_int_equal(several, 5 * 7 * 3 - 1 - 4 - 6 - 2);
-    free(l.s);
+    knobs_close(&l);
     l = make(&base, 0.8, "photons,radius,estimate", 40); /* a part is spread over it */
     for (uint32_t i = 13; i < l.count; i++) {
-        buckets += l.s[i].quality.buckets;
-        few += l.s[i].quality.photons == 2500;
+        buckets += l.settings[i].quality.buckets;
+        few += l.settings[i].quality.photons == 2500;
     }
     assert_in_range(buckets, 10, 25);
     assert_in_range(few, 3, 8);
-    free(l.s);
+    knobs_close(&l);
+}
+
+static void what_lies_beside_a_setting_differs_from_it_in_one_knob(void **state) {
+    knob_list l = make(&base, 0.8, "photons,radius,estimate", 13); /* the default and the knobs alone */
+    vit_status status = VIT_OK;
+    vit_text why = {""};
+    uint32_t from, step = 0;
+    (void)state;
+    l.settings = realloc(l.settings, 100 * sizeof *l.settings);
+    l.most = 100;
+    assert_non_null(l.settings);
+    from = (uint32_t)(find(&l, "estimate buckets") - l.settings);
+    while (knobs_beside(&l, from, step, &status, &why))
+        step++;
+    assert_int_equal(status, VIT_OK);
+    assert_int_equal(step, 5 + 7 + 3);
+    assert_int_equal(l.count, 13 + 4 + 6); /* photons or radius too; the other estimates alone are there */
+    for (uint32_t i = 13; i < l.count; i++) {
+        const scene_quality *q = &l.settings[i].quality;
+        assert_true(q->buckets && !q->raw);
+        assert_int_equal((q->photons != base.photons) + (q->radius != base.radius), 1);
+        assert_string_equal(l.settings[i].knob, "several");
+    }
+    knobs_close(&l);
 }
 
 static void a_short_list_still_has_every_knob(void **state) {
-    list l = make(&base, 0.8, NULL, 10);
+    knob_list l = make(&base, 0.8, NULL, 10);
     (void)state;
     assert_int_equal(l.count, 10);
     for (uint32_t i = 1; i < l.count; i++)
         for (uint32_t k = 0; k < i; k++)
-            assert_string_not_equal(l.s[i].knob, l.s[k].knob);
-    free(l.s);
+            assert_string_not_equal(l.settings[i].knob, l.settings[k].knob);
+    knobs_close(&l);
 }
 
 static void only_knobs_that_are_named_are_turned_and_unknown_ones_refused(void **state) {
-    list l = make(&base, 0.8, "tile,lanes", 64);
+    knob_list l = make(&base, 0.8, "tile,lanes", 64);
     const knobs_input in = {.base = &base, .radius = 0.8, .only = "tile,speed", .most = 9};
-    knob_setting *none;
-    uint32_t count;
+    knob_list none;
     vit_text why = {""};
     (void)state;
     assert_int_equal(l.count, 1 + 3 + 3);
-    free(l.s);
-    assert_int_equal(knobs_settings(&in, &none, &count, &why), VIT_USAGE);
+    knobs_close(&l);
+    assert_int_equal(knobs_open(&in, &none, &why), VIT_USAGE);
     assert_non_null(strstr(why.text, "'speed'"));
     assert_non_null(strstr(why.text, "normal_keys"));
 }
@@ -141,27 +159,27 @@ static void only_knobs_that_are_named_are_turned_and_unknown_ones_refused(void *
 static void without_photons_nothing_is_a_multiple_of_them(void **state) {
     scene_quality q = base;
     q.photons = 0;
-    list l = make(&q, 0, "photons,radius", 64);
+    knob_list l = make(&q, 0, "photons,radius", 64);
     (void)state;
     for (uint32_t i = 0; i < l.count; i++)
-        assert_true(l.s[i].quality.photons == 0);
+        assert_true(l.settings[i].quality.photons == 0);
     assert_in_range(l.count, 1, 2); /* the default, and perhaps radius auto */
-    free(l.s);
+    knobs_close(&l);
 }
 
 static void what_a_setting_says_reads_back(void **state) {
-    list l = make(&base, 1.0 / 3, NULL, 200);
+    knob_list l = make(&base, 1.0 / 3, NULL, 200);
     (void)state;
     for (uint32_t i = 0; i < l.count; i++) {
         vit_text why = {""};
-        scene_quality q = l.s[(i * 7 + 3) % l.count].quality; /* over anything */
-        if (scene_quality_apply(text_of(&l.s[i].quality), &q, &why) != VIT_OK)
+        scene_quality q = l.settings[(i * 7 + 3) % l.count].quality; /* over anything */
+        if (scene_quality_apply(text_of(&l.settings[i].quality), &q, &why) != VIT_OK)
             fail_msg("%s", why.text);
-        assert_string_equal(text_of(&q), text_of(&l.s[i].quality));
-        assert_true(q.radius == l.s[i].quality.radius);
-        assert_true(q.flatten == l.s[i].quality.flatten && q.raw == l.s[i].quality.raw);
+        assert_string_equal(text_of(&q), text_of(&l.settings[i].quality));
+        assert_true(q.radius == l.settings[i].quality.radius);
+        assert_true(q.flatten == l.settings[i].quality.flatten && q.raw == l.settings[i].quality.raw);
     }
-    free(l.s);
+    knobs_close(&l);
 }
 
 static void bad_settings_are_refused_and_change_nothing(void **state) {
@@ -182,6 +200,7 @@ int main(void) {
         cmocka_unit_test(the_default_comes_first_and_each_knob_alone_changes_its_own),
         cmocka_unit_test(no_two_settings_are_alike_and_the_list_is_the_same_each_time),
         cmocka_unit_test(combinations_turn_several_knobs_and_reach_all_values),
+        cmocka_unit_test(what_lies_beside_a_setting_differs_from_it_in_one_knob),
         cmocka_unit_test(a_short_list_still_has_every_knob),
         cmocka_unit_test(only_knobs_that_are_named_are_turned_and_unknown_ones_refused),
         cmocka_unit_test(without_photons_nothing_is_a_multiple_of_them),

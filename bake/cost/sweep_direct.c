@@ -1,0 +1,58 @@
+/* Direct light of the compared frame. Settings that differ in photons alone share it, and few kernels need to be compiled for
+ * it. */
+#include "sweep_parts.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Effects that direct light does not depend on. One that is missing here costs a picture more, and nothing else. */
+#define INDIRECT_EFFECTS                                                                                                       \
+    (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                           \
+     VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS | VIT_EFFECT_BIT_ZONES |               \
+     VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE | VIT_EFFECT_BIT_SPARSE | VIT_EFFECT_BIT_SPARSE_16)
+
+/* Of all that direct light is made from. Lights differ in their photon paths alone. */
+static uint64_t key_of(const sweep_pack *pack) {
+    static const int seen[] = {VIT_SECTION_CAMS, VIT_SECTION_GEOM, VIT_SECTION_ATTR, VIT_SECTION_MATL,
+                               VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS};
+    const vit_pack_entry *table = (const void *)((const char *)pack->bytes + sizeof(vit_pack_header));
+    const vit_scene *meta = (const void *)((const char *)pack->bytes + table[VIT_SECTION_META].offset);
+    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~(uint32_t)INDIRECT_EFFECTS,
+                                                        (uint64_t)meta->width << 32 | meta->height};
+    for (size_t i = 0; i < sizeof seen / sizeof seen[0]; i++)
+        parts[i + 2] = table[seen[i]].hash;
+    return vit_hash(parts, sizeof parts);
+}
+
+vit_status sweep_direct(sweep *s, uint32_t i, const float **image, vit_text *why) {
+    const uint64_t key = key_of(&s->packs[i]);
+    for (uint32_t k = 0; k < s->direct_count; k++)
+        if (s->directs[k].key == key) {
+            *image = s->directs[k].image;
+            return VIT_OK;
+        }
+    sweep_direct_image *d = &s->directs[s->direct_count];
+    *d = (sweep_direct_image){.key = key, .image = calloc(3 * s->points, sizeof *d->image)};
+    if (!d->image) {
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    s->direct_count++; /* freed with the others from now on */
+    *image = d->image;
+    const vit_open_info info = {
+        .pack = s->packs[i].bytes, .pack_size = s->packs[i].size, .device = s->in->pipeline->device, .view = VIT_VIEW_direct};
+    return images_render(&info, s->at, &s->grid, d->image, NULL, why);
+}
+
+void sweep_compare_direct(sweep *s) {
+    const reference *r = &s->out->reference;
+    const float *image = s->directs[0].image; /* the default's: it comes first */
+    double largest = 0, sum = 0;
+    s->out->direct = metrics_compare(r->direct, image, NULL, r->width, r->height);
+    for (size_t i = 0; i < 3 * s->points; i++) {
+        const double d = (double)image[i] - r->direct[i];
+        largest = d > largest ? d : -d > largest ? -d : largest;
+        sum += r->direct[i];
+    }
+    s->out->direct_largest = sum > 0 ? largest * 3 * (double)s->points / sum : 0;
+}
