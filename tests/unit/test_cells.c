@@ -1,8 +1,9 @@
 /* Cells of triangles' sides: the C of bake/cells.c against geometry, and kernels/cells.clh against that C.
  *
- * What could go wrong silently: a formula for a cell's number that is right inside and wrong along edges, where no picture shows it.
- * So the cells' areas must add up to the side's, a point must lie in the cell that it is said to lie in, and the kernel must give the
- * very same numbers as the C for many points, among them corners, edges and points that rounding has put a little outside. */
+ * What could go wrong silently: a formula for a cell's number that is right inside and wrong along edges, where no picture
+ * shows it. So the cells' areas must add up to the side's, a point must lie in the cell that it is said to lie in, and the
+ * kernel must give the very same numbers as the C for many points, among them corners, edges and points that rounding has put a
+ * little outside. */
 #include "cells.h"
 #include "kernel_lab.h"
 
@@ -130,11 +131,20 @@ static point point_at(const fixture *f, uint32_t i, uint64_t *random) {
         p.b2 = 1.0f - p.b2;
     }
     switch (i % 16) {
-    case 0: p.b1 = floorf(p.b1 * n) / n; break;
-    case 4: p.b2 = 1.0f - p.b1; break;
-    case 8: p.b1 = i & 16 ? 0.0f : 1.0f, p.b2 = i & 16 ? (float)(i >> 5 & 1) : 0.0f; break;
-    case 12: p.b1 = i & 16 ? -1e-6f : p.b1, p.b2 = i & 16 ? p.b2 : 1.000001f - p.b1; break;
-    default: break;
+    case 0:
+        p.b1 = floorf(p.b1 * n) / n;
+        break;
+    case 4:
+        p.b2 = 1.0f - p.b1;
+        break;
+    case 8:
+        p.b1 = i & 16 ? 0.0f : 1.0f, p.b2 = i & 16 ? (float)(i >> 5 & 1) : 0.0f;
+        break;
+    case 12:
+        p.b1 = i & 16 ? -1e-6f : p.b1, p.b2 = i & 16 ? p.b2 : 1.000001f - p.b1;
+        break;
+    default:
+        break;
     }
     return p;
 }
@@ -186,10 +196,14 @@ typedef struct looked_up {
 } looked_up;
 
 static void run_kernel(const fixture *f, unsigned lanes, looked_up *p) {
-    lab l = lab_open(lanes, VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_AREA, look_up);
-    const cl_mem arguments[] = {lab_buffer(&l, f->c.sides, SIDES * sizeof *f->c.sides), lab_buffer(&l, p->side, sizeof p->side),
-                                lab_buffer(&l, p->hit, sizeof p->hit),                  lab_buffer(&l, p->b, sizeof p->b),
-                                lab_buffer(&l, NULL, sizeof p->index),                  lab_buffer(&l, NULL, sizeof p->weight)};
+    lab l =
+        lab_open(lanes, VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_AREA, look_up);
+    const cl_mem arguments[] = {lab_buffer(&l, f->c.sides, SIDES * sizeof *f->c.sides),
+                                lab_buffer(&l, p->side, sizeof p->side),
+                                lab_buffer(&l, p->hit, sizeof p->hit),
+                                lab_buffer(&l, p->b, sizeof p->b),
+                                lab_buffer(&l, NULL, sizeof p->index),
+                                lab_buffer(&l, NULL, sizeof p->weight)};
     lab_run(&l, "look_up", POINTS / lanes, arguments, 6);
     lab_read(&l, arguments[4], p->index, sizeof p->index);
     lab_read(&l, arguments[5], p->weight, sizeof p->weight);
