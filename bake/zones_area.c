@@ -24,7 +24,8 @@ typedef struct corner {
     const areas *a;
     vec3 p, n;
     uint32_t accept, alike;
-    wide accepted, lit_alike, front; /* sums: zones accepted, lit alike; all surfaces that face the same half space */
+    wide accepted, lit_alike, front; /* sums: zones accepted, lit alike; all surfaces in front, without zones by the share of their photons
+                                      * that count */
 } corner;
 
 static void add_block(corner *c, const area_block *b) {
@@ -36,7 +37,11 @@ static void add_block(corner *c, const area_block *b) {
     k = (wide)((wide_i)(k * b->area) & (wide_i)(k > zero));
     c->accepted += (wide)((wide_i)k & (wide_i)((b->zone & (int32_t)c->accept) != 0));
     c->lit_alike += (wide)((wide_i)k & (wide_i)((b->zone & (int32_t)c->alike) != 0));
-    c->front += (wide)((wide_i)k & (wide_i)(b->nx * c->n.x + b->ny * c->n.y + b->nz * c->n.z > zero));
+    const wide cosine = b->nx * c->n.x + b->ny * c->n.y + b->nz * c->n.z;
+    if (z->in->zones)
+        c->front += (wide)((wide_i)k & (wide_i)(cosine > zero));
+    else /* photons count that arrive from the front: of even light, (1 + cos) / 2 of those on a surface turned by that angle */
+        c->front += k * (0.5f + 0.5f * cosine);
 }
 
 static void add_blocks(void *user, uint32_t begin, uint32_t end) {

@@ -12,7 +12,8 @@
  * renderer, and must add up to the box's area.
  *
  * What remains: in the box, the kernel loses light over edges and takes some from the wall round the corner; both go with
- * radius / width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. */
+ * radius / width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. Effective
+ * areas must mend the edges themselves, with and without zones; so pixels near edges are also measured alone. */
 #include "scene_lab.h"
 #include <math.h>
 
@@ -185,6 +186,51 @@ static double box_ratio(scene_lab *l, const char *scene, const char *options) {
     return ratio;
 }
 
+/* Distance, m, of what the middle of pixel (x, y) of view i sees from the nearest edge of the box. */
+static double edge_distance(int i, int x, int y) {
+    const double u = (2 * x + 1.0) / SIDE - 1, v = 1 - (2 * y + 1.0) / SIDE;
+    const double side[3] = {axis[i][1] * up[i][2] - axis[i][2] * up[i][1], axis[i][2] * up[i][0] - axis[i][0] * up[i][2],
+                            axis[i][0] * up[i][1] - axis[i][1] * up[i][0]};
+    double d[3], t = 1e30, least = 1e30;
+    int wall = 0;
+    for (int k = 0; k < 3; k++) {
+        d[k] = axis[i][k] + u * side[k] + v * up[i][k];
+        const double at = fabs(d[k]) > 1e-12 ? ((d[k] > 0 ? box_hi[k] : box_lo[k]) - eye[k]) / d[k] : 1e30;
+        if (at < t) {
+            t = at;
+            wall = k;
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        if (k != wall)
+            least = fmin(least, fmin(box_hi[k] - eye[k] - t * d[k], eye[k] + t * d[k] - box_lo[k]));
+    return least;
+}
+
+/* Mean irradiance over the analytic one, in the middle of the walls and in the strip along the edges. The photons' own distribution is
+ * not even in a box: each class is held to what smaller radii find there. */
+typedef struct strips {
+    double middle, edges;
+} strips;
+
+static strips box_strips(scene_lab *l, const char *options, double radius) {
+    static float pixels[FLOATS];
+    double light[2] = {0}, area[2] = {0};
+    scene_lab_indirect(l, "box.cfg", options, pixels, FLOATS);
+    for (int i = 0; i < VIEWS; i++)
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++) {
+                const double far = edge_distance(i, x, y), a = pixel_area(i, x, y);
+                if (far >= 0.3 * radius && far < radius)
+                    continue;
+                light[far < radius] += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                area[far < radius] += a;
+            }
+    const strips s = {light[0] / area[0] / analytic(box_area()), light[1] / area[1] / analytic(box_area())};
+    printf("strips  %-60s middle %+.2f %%, edges %+.2f %%\n", options, 100 * (s.middle - 1), 100 * (s.edges - 1));
+    return s;
+}
+
 /* Largest deviation from the analytic irradiance of the six views' means in the unit sphere. */
 static double sphere_deviation(scene_lab *l, const char *options) {
     static float pixels[FLOATS];
@@ -235,6 +281,25 @@ static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state)
     (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --kernel flattened");
 }
 
+#define STRIPS "--photons 131072 --radius 0.25 "
+#define ALL_AREAS "--zones 1 --effective-area 1"
+static bool agree(strips a, strips b, double middle, double edges) {
+    return fabs(a.middle / b.middle - 1) < middle && fabs(a.edges / b.edges - 1) < edges;
+}
+
+static void effective_areas_mend_edges(void **state) {
+    const strips truth = box_strips(*state, "--photons 524288 --radius 0.05 " ALL_AREAS, 0.25);
+    assert_false(agree(box_strips(*state, STRIPS "--zones 0 --effective-area 0", 0.25), truth, 0.01, 0.08));
+    assert_true(agree(box_strips(*state, STRIPS ALL_AREAS, 0.25), truth, 0.01, 0.03));
+    assert_true(agree(box_strips(*state, STRIPS "--zones 0 --effective-area 1", 0.25), truth, 0.01, 0.06));
+    (void)box_strips(*state, STRIPS ALL_AREAS " --estimate buckets", 0.25);
+}
+
+static void effective_areas_keep_the_light(void **state) {
+    assert_true(fabs(box_ratio(*state, "box.cfg", STRIPS ALL_AREAS) - 1) < 0.01);
+    assert_true(sphere_deviation(*state, STRIPS ALL_AREAS) < 0.02);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_list_estimate_keeps_all_light_in_a_box),
@@ -242,6 +307,8 @@ int main(void) {
         cmocka_unit_test(the_bucket_estimate_keeps_all_light_in_a_box),
         cmocka_unit_test(the_list_estimate_is_right_everywhere_in_a_sphere),
         cmocka_unit_test(the_bucket_estimate_is_right_everywhere_in_a_sphere),
+        cmocka_unit_test(effective_areas_mend_edges),
+        cmocka_unit_test(effective_areas_keep_the_light),
         cmocka_unit_test(raw_buckets_and_the_flattened_kernel_are_only_reported),
     };
     return cmocka_run_group_tests_name("furnace", tests, set_up, tear_down);
