@@ -62,7 +62,8 @@ static const struct {
 static const struct {
     const char *name, *input, *options;
 } test_packs[] = {
-#define CORNELL TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000 "
+#define PLAIN "--zones 0 --effective-area 0 --bounce-sequence 0 "
+#define CORNELL TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000 " PLAIN
     {"list", CORNELL "--all-formats"},
     {"buckets", CORNELL "--all-formats --estimate buckets"},
     {"raw", CORNELL "--estimate buckets --smoothing raw"},
@@ -74,19 +75,29 @@ static const struct {
     {"small-sparse", CORNELL "--sample-bits 16 --indirect-samples 4"},
     {"dark", CORNELL "--photons 0"},
 #undef CORNELL
-#define ODD TEST_SCENES "/cornell.cfg", "--photons 5000 --frames 2 --all-formats "
+#define ODD TEST_SCENES "/cornell.cfg", "--photons 5000 --frames 2 --all-formats " PLAIN
     {"1x1", ODD "--size 1x1"},
     {"17x1", ODD "--size 17x1"},
     {"33x47", ODD "--size 33x47"},
     {"sparse-17x1", ODD "--size 17x1 --indirect-samples 16"},
 #undef ODD
-    {"room", TEST_PACKS "/room.cfg", ""},
-    {"room-buckets", TEST_PACKS "/room.cfg", "--estimate buckets"},
-    {"sparse-room", TEST_PACKS "/room.cfg", "--indirect-samples 16"},
-    {"sparse-buckets", TEST_PACKS "/room.cfg", "--estimate buckets --indirect-samples 4"},
-    {"nearest", TEST_PACKS "/room.cfg", "--texture-filter nearest"},
-    {"trilinear", TEST_PACKS "/room.cfg", "--texture-filter trilinear"},
-    {"still", TEST_PACKS "/still.cfg", ""},
+    {"room", TEST_PACKS "/room.cfg", PLAIN},
+    {"room-buckets", TEST_PACKS "/room.cfg", PLAIN "--estimate buckets"},
+    {"sparse-room", TEST_PACKS "/room.cfg", PLAIN "--indirect-samples 16"},
+    {"sparse-buckets", TEST_PACKS "/room.cfg", PLAIN "--estimate buckets --indirect-samples 4"},
+    {"nearest", TEST_PACKS "/room.cfg", PLAIN "--texture-filter nearest"},
+    {"trilinear", TEST_PACKS "/room.cfg", PLAIN "--texture-filter trilinear"},
+#define BAKED "--zones 2 --effective-area 1 --bounce-sequence 1 "
+    {"zones", TEST_PACKS "/room.cfg", BAKED},
+    {"zones-buckets", TEST_PACKS "/room.cfg", BAKED "--estimate buckets --normal-keys 1"},
+    {"zones-sparse", TEST_PACKS "/room.cfg", BAKED "--indirect-samples 16"},
+    {"zones-sparse-buckets", TEST_PACKS "/room.cfg", BAKED "--indirect-samples 4 --estimate buckets"},
+    {"zones-alone", TEST_PACKS "/room.cfg", "--zones 1 --effective-area 0 --bounce-sequence 0"},
+    {"areas-alone", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0"},
+    {"sequence", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 0 --bounce-sequence 1"},
+#undef BAKED
+    {"still", TEST_PACKS "/still.cfg", PLAIN},
+#undef PLAIN
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
     {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},
     {"atrium", TEST_SCENES "/atrium.cfg", "--size 256x144 --frames 2"},

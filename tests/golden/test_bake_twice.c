@@ -66,6 +66,11 @@ static void a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes(
     assert_bakes_alike(TEST_PACKS "/room.cfg", "--estimate buckets");
 }
 
+static void zones_and_areas_bake_to_the_same_bytes(void **state) {
+    (void)state;
+    assert_bakes_alike(TEST_PACKS "/room.cfg", "--zones 2 --effective-area 1 --bounce-sequence 1 --radius 0.3");
+}
+
 static void a_mesh_without_a_scene_file_bakes_to_the_same_bytes(void **state) {
     (void)state;
     assert_bakes_alike(TEST_SCENES "/furnace.obj", "--size 64x48 --frames 2 --photons 1000");
@@ -75,6 +80,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_with_a_moving_light_bakes_to_the_same_bytes),
         cmocka_unit_test(a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes),
+        cmocka_unit_test(zones_and_areas_bake_to_the_same_bytes),
         cmocka_unit_test(a_mesh_without_a_scene_file_bakes_to_the_same_bytes),
     };
     return cmocka_run_group_tests_name("bake twice", tests, NULL, NULL);

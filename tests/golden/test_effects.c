@@ -185,6 +185,19 @@ static void small_samples_halve_the_positions_and_nothing_else(void **state) {
     assert_int_equal(bytes_of(&small, "position") * 2, bytes_of(&plain, "position"));
 }
 
+static void zones_and_areas_add_their_cells_and_a_word_a_sample_each(void **state) {
+    (void)state;
+    const vit_requirements all = requirements("zones"), plain = requirements("room");
+    only_adds("zones", "room", " sides cells accept inverse_area ", " ");
+    only_adds("zones-alone", "room", " sides cells accept ", " ");
+    only_adds("areas-alone", "room", " sides cells inverse_area ", " ");
+    only_adds("sequence", "room", " ", " ");
+    assert_int_equal(bytes_of(&all, "accept"), bytes_of(&plain, "keys"));
+    assert_int_equal(bytes_of(&all, "inverse_area"), bytes_of(&plain, "keys"));
+    assert_int_equal(bytes_of(&all, "sides"), bytes_of(&plain, "triangles") / sizeof(vit_triangle) * 2 * sizeof(vit_u32));
+    assert_int_equal(plain.effects & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE), 0);
+}
+
 static void still_lights_have_no_pass_that_traces_photons(void **state) {
     (void)state;
     only_adds("room", "still", " ", " photon_paths ");
@@ -275,6 +288,7 @@ int main(void) {
         cmocka_unit_test(light_at_fewer_samples_takes_the_place_of_the_estimate),
         cmocka_unit_test(a_texture_filter_takes_no_buffer_and_no_pass),
         cmocka_unit_test(small_samples_halve_the_positions_and_nothing_else),
+        cmocka_unit_test(zones_and_areas_add_their_cells_and_a_word_a_sample_each),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),

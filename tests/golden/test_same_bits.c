@@ -123,6 +123,11 @@ ALIKE(nearest_texels_hash_the_same, "nearest", few)
 ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
 ALIKE(small_samples_hash_the_same, "small", together)
 ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse", few)
+ALIKE(zones_areas_and_sequence_hash_the_same, "zones", together)
+ALIKE(zones_in_buckets_hash_the_same, "zones-buckets", together)
+ALIKE(zones_at_few_samples_hash_the_same, "zones-sparse", few)
+ALIKE(zones_in_buckets_at_few_samples_hash_the_same, "zones-sparse-buckets", few)
+ALIKE(areas_alone_hash_the_same, "areas-alone", few)
 ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -160,6 +165,8 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("small-sparse"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("sparse-room"), "--trace", together, COUNT(together));
     assert_all_alike(test_pack("sparse-buckets"), "--trace", few, COUNT(few));
+    assert_all_alike(test_pack("zones"), "--trace", together, COUNT(together));
+    assert_all_alike(test_pack("zones-buckets"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
 }
 
@@ -199,6 +206,11 @@ int main(void) {
         cmocka_unit_test(trilinear_textures_hash_the_same),
         cmocka_unit_test(small_samples_hash_the_same),
         cmocka_unit_test(small_samples_with_interpolated_light_hash_the_same),
+        cmocka_unit_test(zones_areas_and_sequence_hash_the_same),
+        cmocka_unit_test(zones_in_buckets_hash_the_same),
+        cmocka_unit_test(zones_at_few_samples_hash_the_same),
+        cmocka_unit_test(zones_in_buckets_at_few_samples_hash_the_same),
+        cmocka_unit_test(areas_alone_hash_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),

@@ -23,7 +23,7 @@ static uint64_t total(const vit_statistics *s, uint32_t kind) {
 }
 
 static const char *const packs[] = {"list",  "buckets", "room", "room-buckets", "raw",           "normal-keys",
-                                    "33x47", "still",   "dark", "sparse",       "sparse-buckets"};
+                                    "33x47", "still",   "dark", "sparse",       "sparse-buckets", "zones", "zones-buckets"};
 enum { PACKS = sizeof packs / sizeof packs[0] };
 
 /* Every pass and kind; those that depend on the lanes only if asked. */
@@ -213,7 +213,7 @@ static void shadow_rays_go_where_light_could_come_from(void **state) {
 
 static void evaluations_of_a_list_are_the_lists_of_the_samples(void **state) {
     (void)state;
-    static const char *const lists[] = {"list", "normal-keys", "33x47", "room", "still"};
+    static const char *const lists[] = {"list", "normal-keys", "33x47", "room", "still", "zones"};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         counted *c = count_and_read(lists[i], (vit_open_info){0});
         uint64_t expected = 0;
