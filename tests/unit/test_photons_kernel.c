@@ -3,17 +3,19 @@
  * there on with them, so a few may differ. */
 #include "photon_room.h"
 #include "kernel_lab.h"
+#include "zones.h"
 
 /* The kernel with its frame number fixed: the laboratory passes buffers only. */
 static const char frame_zero[] =
-    "kernel void photon_paths_of_frame_0(RAY_SCENE_PARAMETERS, global const vit_light *lights,\n"
-    "                                    global vit_photon *photons, volatile global uint *counters)\n"
+    "kernel void photon_paths_of_frame_0(RAY_SCENE_PARAMETERS, global const vit_light *lights, global const uint *sides,\n"
+    "                                    global const uint *cells, global vit_photon *photons,\n"
+    "                                    volatile global uint *counters)\n"
     "{\n"
-    "    photon_paths(RAY_SCENE, lights, 0u, (global const uint *)0, (global const uint *)0, photons, counters);\n"
+    "    photon_paths(RAY_SCENE, lights, 0u, sides, cells, photons, counters);\n"
     "}\n";
 
 /* The lights of `r` as moving ones, traced by kernels/photons.cl: all slots, all lights side by side. */
-static vit_photon *kernel_photons(const room *r, uint32_t paths) {
+static vit_photon *kernel_photons(const room *r, const cells *c, uint32_t paths) {
     const size_t size = (size_t)paths * (r->in.bounces - 1) * sizeof(vit_photon);
     const vit_scene s = {.triangles = r->m.triangles,
                          .nodes = r->b.node_count,
@@ -43,13 +45,15 @@ static vit_photon *kernel_photons(const room *r, uint32_t paths) {
                                 lab_buffer(&l, r->a.texels, r->a.texel_count * sizeof *r->a.texels),
                                 lab_buffer(&l, r->b.nodes, r->b.node_count * sizeof *r->b.nodes),
                                 lab_buffer(&l, lights, sizeof lights),
+                                lab_buffer(&l, c->sides, 2 * r->m.triangles * sizeof *c->sides),
+                                lab_buffer(&l, c->cells, c->count * sizeof *c->cells),
                                 lab_buffer(&l, NULL, size),
                                 lab_buffer(&l, NULL, VIT_COUNTER_COUNT * sizeof(cl_uint))};
     enum { ARGUMENTS = sizeof arguments / sizeof arguments[0] };
     vit_photon *photons = malloc(size);
     assert_non_null(photons);
     lab_run(&l, "photon_paths_of_frame_0", paths, arguments, ARGUMENTS);
-    lab_read(&l, arguments[9], photons, size);
+    lab_read(&l, arguments[11], photons, size);
     for (int i = 0; i < ARGUMENTS; i++)
         clReleaseMemObject(arguments[i]);
     lab_close(&l);
@@ -83,12 +87,34 @@ static room *furnished_room(void) {
     return r;
 }
 
-static void compare(uint32_t filter) {
+static float a_tenth(void *user, uint32_t side) {
+    (void)user;
+    (void)side;
+    return 0.1f;
+}
+
+/* Any zones will do: neighbouring cells have different ones. */
+static cells some_cells(const room *r) {
+    cells c;
+    vit_text why = {""};
+    assert_int_equal(cells_divide(&r->g, r->m.triangles, a_tenth, NULL, &c, &why), VIT_OK);
+    for (uint32_t i = 0; i < c.count; i++)
+        c.cells[i].word = (i * 7u + i / 32u) << 27;
+    return c;
+}
+
+/* effects: a texture filter, SEQUENCE, ZONES. */
+static void compare(uint32_t effects) {
     room *r = furnished_room();
-    r->in.effects = filter;
+    cells c = some_cells(r);
+    r->in.effects = effects;
+    r->in.sequence = (effects & VIT_EFFECT_BIT_SEQUENCE) != 0;
+    r->in.cells = effects & VIT_EFFECT_BIT_ZONES ? &c : NULL;
     const uint32_t paths = r->lights[0].paths, stored = r->in.bounces - 1;
-    uint32_t count, alike = 0, same = 0;
-    vit_photon *baked = room_bake(r, 2, &count), *traced = kernel_photons(r, 2 * paths);
+    uint32_t count, alike = 0, same = 0, zones = 0;
+    vit_photon *baked = room_bake(r, 2, &count), *traced = kernel_photons(r, &c, 2 * paths);
+    if (r->in.cells)
+        zones_assign(&c, baked, count);
     double watts = 0.0, expected = 0.0;
     assert_int_equal(count, 2 * paths * stored);
     for (uint32_t i = 0; i < count; i++) {
@@ -100,6 +126,7 @@ static void compare(uint32_t filter) {
             watts += room_watts(r, p, k);
             expected += room_watts(r, q, k);
         }
+        zones |= p->zone;
         same += memcmp(p, q, sizeof *p) == 0;
         alike += distance < 2e-3 && q->radius2 == p->radius2;
     }
@@ -107,6 +134,8 @@ static void compare(uint32_t filter) {
     assert_true(alike >= 0.99 * count);
     assert_true(fabs(watts / expected - 1.0) < 1e-3);
     assert_true(same >= 0.9 * count);
+    assert_int_equal(zones, r->in.cells ? ~0u : 0u);
+    cells_free(&c);
     free(traced);
     free(baked);
     room_drop(r);
@@ -123,10 +152,18 @@ static void so_they_do_with_other_texture_filters(void **state) {
     compare(VIT_EFFECT_BIT_TRILINEAR);
 }
 
+static void so_they_do_with_zones_and_the_bounce_sequence(void **state) {
+    (void)state;
+    compare(VIT_EFFECT_BIT_SEQUENCE);
+    compare(VIT_EFFECT_BIT_ZONES);
+    compare(VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_SEQUENCE);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(still_lights_have_the_photons_that_the_kernel_gives_moving_ones),
         cmocka_unit_test(so_they_do_with_other_texture_filters),
+        cmocka_unit_test(so_they_do_with_zones_and_the_bounce_sequence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
