@@ -123,6 +123,7 @@ ALIKE(nearest_texels_hash_the_same, "nearest", few)
 ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
 ALIKE(small_samples_hash_the_same, "small", together)
 ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse", few)
+ALIKE(interpolated_light_with_zones_and_areas_hashes_the_same, "sparse-zones-areas", few)
 ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -199,6 +200,7 @@ int main(void) {
         cmocka_unit_test(trilinear_textures_hash_the_same),
         cmocka_unit_test(small_samples_hash_the_same),
         cmocka_unit_test(small_samples_with_interpolated_light_hash_the_same),
+        cmocka_unit_test(interpolated_light_with_zones_and_areas_hashes_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),
