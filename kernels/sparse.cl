@@ -1,7 +1,7 @@
 /* Pass 8 at fewer samples: irradiance is estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other
- * samples get it from the four coarse ones around them, weighted bilinearly and by whether they lie on the same surface: Kopf et
- * al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees with is estimated after all. Albedo is
- * applied later, so that textures stay sharp. */
+ * samples get it from the four coarse ones around them, weighted bilinearly and by whether they lie on the same surface (and with
+ * zones, take the same photons): Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees
+ * with is estimated after all. Albedo is applied later, so that textures stay sharp. */
 #if VIT_EFFECT_SPARSE
 
 #if VIT_EFFECT_SPARSE_16
@@ -13,8 +13,8 @@
 #define SPARSE_BLOCK (SPARSE_ROW * SPARSE_ROW)
 #define SPARSE_LEAST 0.1f /* sum of weights below which a sample has no neighbours; 1: four of the same plane and normal */
 
-/* A coarse sample: irradiance, position, unit normal, 3 floats each; irradiance -1: it has no key. A block's are side by side,
- * the one of the least pixel first. */
+/* A coarse sample: its sum before estimate_normalise, which each sample does for itself; position; unit normal: 3 floats each. A
+ * sum of -1: it has no key. A block's are side by side, the one of the least pixel first. */
 #define SPARSE_FLOATS 9
 
 static inline uint sparse_count(global const vit_scene *scene)
@@ -45,6 +45,9 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
     estimate_sample found = estimate_load_at(scene, sample, position, normal, accept, inverse_area);
     lv3 p = found.p, s = found.s;
+#if VIT_EFFECT_AREA
+    found.inverse_area = flags ? found.inverse_area : (lf)1;
+#endif
     li keyed = l_sel_i(L_LT(L_INDEX, (li)(int)used), (li)key, (li)-1);
 #if VIT_EFFECT_LIST
     lv3 e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
@@ -149,21 +152,20 @@ static inline lf sparse_agreement(global const float *c, lv3 p, lv3 s, lf per_st
     return l_max(fma(-off, off, (lf)1), (lf)0) * (cosine * cosine);
 }
 
-/* The coarse block x, y of the picture, or NULL beyond it. */
-static inline global const float *sparse_block(global const vit_scene *scene, global const float *coarse, uint x, uint y)
+/* Number of the block x, y of the picture, or VIT_NONE beyond it. */
+static inline uint sparse_block(global const vit_scene *scene, uint x, uint y)
 {
     uint shift = 29u - (uint)clz(scene->tile), across = scene->tiles_x << shift, down = scene->tiles_y << shift, inner = (1u << shift) - 1;
     if (x >= across || y >= down)
-        return 0;
-    uint block = (((y >> shift) * scene->tiles_x + (x >> shift)) << (2 * shift)) + ((y & inner) << shift) + (x & inner);
-    return coarse + (size_t)block * (SPARSE_BLOCK * SPARSE_FLOATS);
+        return VIT_NONE;
+    return (((y >> shift) * scene->tiles_x + (x >> shift)) << (2 * shift)) + ((y & inner) << shift) + (x & inner);
 }
 
 /* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
  * and no light yet. */
 kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
-                        global const sample_coordinate *position, global const uint *normal, global const float *coarse, global float *indirect,
-                        global uint *flags)
+                        global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED, global const float *coarse,
+                        global float *indirect, global uint *flags)
 {
     uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
     if (block >= n / 16)
@@ -172,31 +174,34 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
     float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2], step = (float)SPARSE_STEP * sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
     uint shift = 29u - (uint)clz(scene->tile), tile = block >> (2 * shift), in_tile = block & ((1u << (2 * shift)) - 1);
     uint bx = ((tile % scene->tiles_x) << shift) + (in_tile & ((1u << shift) - 1)), by = ((tile / scene->tiles_x) << shift) + (in_tile >> shift);
-    global const float *corner[4];
+    uint around[4];
     for (uint k = 0; k < 4; k++)
-        corner[k] = sparse_block(scene, coarse, bx + (k & 1), by + (k >> 1));
+        around[k] = sparse_block(scene, bx + (k & 1), by + (k >> 1));
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), (li)0), pixel = (int)at + L_INDEX;
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
+        estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
+        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, (lf)1e-30f);
         lf weights = (lf)0, x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
-                global const float *c = corner[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)];
+                uint from = around[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)], k = cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW;
                 lf tent = l_max(1.0f - fabs(x - (float)cx), (lf)0) * l_max(1.0f - fabs(y - (float)cy), (lf)0);
-                if (!c || !l_any(has & L_GT(tent, (lf)0)))
-                    continue;
-                c += (cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW) * SPARSE_FLOATS;
-                if (c[0] < 0)
+                global const float *c = coarse + ((size_t)from * SPARSE_BLOCK + k) * SPARSE_FLOATS;
+                if (from == VIT_NONE || !l_any(has & L_GT(tent, (lf)0)) || c[0] < 0)
                     continue;
                 lf w = tent * sparse_agreement(c, p, s, per_step);
+#if VIT_EFFECT_ZONES
+                uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
+                w = l_sel(L_EQ(own.accept, (li)(int)accept[sample]), w, (lf)0); /* the same photons count for both */
+#endif
                 sum = lv3_along(sum, lv3_load(c), w);
                 weights += w;
             }
         li good = has & L_GE(weights, (lf)SPARSE_LEAST);
         lf scale = l_sel(good, 1.0f / l_max(weights, (lf)SPARSE_LEAST), (lf)0);
-        lv3_store_planes(lv3_scale(sum, scale), indirect, n, first);
+        lv3_store_planes(estimate_normalise(&own, lv3_scale(sum, scale)), indirect, n, first);
         flagged |= l_bits(has & ~good) << at;
     }
     flags[block] = flagged;

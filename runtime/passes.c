@@ -95,7 +95,7 @@ const vit_pass vit_passes[] = {
      PER_BLOCK,
      ONCE,
      W(indirect) | W(flags),
-     {B_scene, B_cameras, V_frame, B_keys, B_position, B_normal, B_coarse, B_indirect, B_flags, V_END}},
+     {B_scene, B_cameras, V_frame, B_keys, B_position, B_normal, B_accept, B_inverse_area, B_coarse, B_indirect, B_flags, V_END}},
     {"estimate_rest", ON(SPARSE), PER_REST, ONCE, W(indirect), {SPARSE_INPUT, B_flags, B_indirect, WORK}},
     {"dots_clear", ON_DOTS, PER_PIXEL, ONCE, W(dots), {B_scene, B_dots, V_END}},
     {"photon_dots", ON_DOTS, PER_PHOTON, ONCE, W(dots), {B_scene, B_cameras, V_frame, B_photons, B_hit_distance, B_dots, V_END}},

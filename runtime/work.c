@@ -27,7 +27,7 @@
     X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
     X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
     X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
-    X(interpolate, (4 + z->position + 4 + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
+    X(interpolate, (4 + z->position + 4 + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \

@@ -73,6 +73,8 @@ static const struct {
     {"sparse-16", CORNELL "--normal-keys 1 --tile 8 --indirect-samples 16"},
     {"small", CORNELL "--all-formats --sample-bits 16"},
     {"small-sparse", CORNELL "--sample-bits 16 --indirect-samples 4"},
+    {"zones-areas", CORNELL "--zones 1 --effective-area 1"},
+    {"sparse-zones-areas", CORNELL "--zones 1 --effective-area 1 --indirect-samples 4"},
     {"dark", CORNELL "--photons 0"},
 #undef CORNELL
 #define ODD TEST_SCENES "/cornell.cfg", "--photons 5000 --frames 2 --all-formats " PLAIN

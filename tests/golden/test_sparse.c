@@ -81,6 +81,7 @@ static const pair pairs[] = {
     {"normal-keys", "sparse-16", 4, 2e-2},
     {"room-buckets", "sparse-buckets", 2, 2e-3},
     {"room", "sparse-room", 4, 4e-2},
+    {"zones-areas", "sparse-zones-areas", 2, 6e-3},
 };
 #define PAIRS (sizeof pairs / sizeof pairs[0])
 
