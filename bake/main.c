@@ -71,6 +71,9 @@ static vit_status explain(const bake *b, vit_text *why) {
     if (s->effects & VIT_EFFECT_BIT_PHOTONS)
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
                (double)s->radius);
+    if (s->cells > 0)
+        printf("  zones and areas: %u cells, %u groups of them seen from the path, %u patches, %.4g m2 open to light; 32 zones miss %.2g %% of the weight\n",
+               s->cells, b->packed.zones.receivers, b->packed.zones.patches, b->packed.zones.open_area, 100 * b->packed.zones.wrong);
     printf("\nbounds, the largest of any frame\n  hierarchy nodes %u, list entries %u, depth slices %u from %u on, key bits %u\n", s->max_nodes, s->max_list,
            s->slice_count, s->slice_first, s->key_bits);
     printf("\nbuffers\n");
