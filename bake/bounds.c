@@ -63,10 +63,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     vit_scene s = *in->scene;
     pack_sections sections = *in->sections;
     run r;
-    s.effects &= ~(uint32_t)(VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS |
-                             VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE | VIT_EFFECT_BIT_SPARSE |
-                             VIT_EFFECT_BIT_SPARSE_16);
-    s.effects |= VIT_EFFECT_BIT_LIST;
+    s.effects = (s.effects & ~vit_effects_upon(VIT_EFFECT_BIT_PHOTONS)) | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_LIST;
     s.cells = 0;
     s.paths = 0;
     s.baked = 1;

@@ -12,8 +12,9 @@ static uint32_t parts_of(const geometry *g, uint32_t side, float edge) {
     const vec3 e[3] = {vec3_sub(b, a), vec3_sub(c, b), vec3_sub(a, c)};
     const float l2 = float_max(float_max(vec3_dot(e[0], e[0]), vec3_dot(e[1], e[1])), vec3_dot(e[2], e[2]));
     const float longest = sqrtf(l2), square = sqrtf(2.0f * side_area(g, side));
-    const float parts = ceilf(float_min(longest, float_max(square, longest * 0.5f)) / edge); /* slivers' cells are long, not many */
-    return parts >= 1.0f ? (uint32_t)float_min(parts, MOST_PARTS) : 1; /* an edge may be too long for a float's square */
+    const float parts =
+        ceilf(float_min(longest, float_max(square, longest * 0.5f)) / edge); /* slivers' cells are long, not many */
+    return parts >= 1.0f ? (uint32_t)float_min(parts, MOST_PARTS) : 1;       /* an edge may be too long for a float's square */
 }
 
 static uint64_t count_cells(const geometry *g, uint32_t sides, const float *edge, float scale) {
@@ -44,7 +45,8 @@ vit_status cells_divide(const geometry *g, uint32_t triangles, float (*edge)(voi
         const bool many = count > VIT_SIDE_CELL;
         free(edges);
         cells_free(out);
-        snprintf(why->text, sizeof why->text, many ? "too many triangles for zones and effective areas: at most 8 million" : "out of memory");
+        snprintf(why->text, sizeof why->text,
+                 many ? "too many triangles for zones and effective areas: at most 8 million" : "out of memory");
         return many ? VIT_BAD_INPUT : VIT_FAILED;
     }
     for (uint32_t i = 0; i < sides; i++) {

@@ -6,8 +6,8 @@
 #include "photon_math.h"
 
 typedef struct cells {
-    vit_u32 *sides; /* 2 a triangle: section SIDE */
-    vit_cell *cells; /* section CELL */
+    vit_u32 *sides;    /* 2 a triangle: section SIDE */
+    vit_cell *cells;   /* section CELL */
     uint32_t *side_of; /* a cell: its side */
     uint32_t count;
 } cells;
@@ -17,8 +17,8 @@ typedef struct cell_corners {
     float b1[3], b2[3];
 } cell_corners;
 
-/* Divides every side into cells whose edges are at most edge(user, side) metres; longer edges if there were more than 2^23 cells.
- * Cells are zero. VIT_FAILED: out of memory. */
+/* Divides every side into cells whose edges are at most edge(user, side) metres; longer edges if there were more than 2^23
+ * cells. Cells are zero. VIT_FAILED: out of memory. */
 vit_status cells_divide(const geometry *g, uint32_t triangles, float (*edge)(void *user, uint32_t side), void *user, cells *out,
                         vit_text *why);
 void cells_free(cells *c);

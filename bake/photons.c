@@ -61,7 +61,7 @@ static vec3 emission(const vit_light *light, uint32_t count, uint32_t i, uint32_
 
 /* Cosine-distributed direction about n from the bounce's two random numbers; photon_numbers() of kernels/photons.cl. */
 static vec3 bounce(vec3 n, uint32_t number, uint32_t hit, bool sequence) {
-    static const uint32_t alpha[6] = {0xe60e2b73u, 0xcebd76dbu, 0xb9c9aa3bu, 0xa6f5777fu, 0x9609c71fu, 0x86d516e5u};
+    static const uint32_t alpha[6] = VIT_BOUNCE_ALPHA;
     const uint32_t seed = pcg(number ^ pcg(hit * 2u + 1u)), k = hit % 3u * 2u;
     const float a = unit_float(sequence ? number * alpha[k] + pcg(hit * 2u + 1u) : seed);
     const float b = unit_float(sequence ? number * alpha[k + 1u] + pcg(hit * 2u + 2u) : pcg(seed));

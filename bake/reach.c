@@ -9,23 +9,20 @@
  * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray.
  * Every light that shines at all gives the same power; all together 1, and irradiance is in that unit a m2. */
 #include "reach.h"
+#include "parallel.h"
 #include "reach_rays.h"
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-#include <unistd.h>
 
-#define CHUNK 256u /* items that a thread takes at a time */
 #define LIGHT_RAYS (1u << 20)
 #define LIGHT_STREAM 0xffffffffu
 #define GATHER_RAYS 16u /* of a side in step 2 */
 #define ASK_LIGHTS 16u  /* in step 4 */
 #define ASK_RAYS 96u
-#define ITERATIONS 40 /* 0.8^40 = 1e-4 */
-#define MAX_THREADS 256u
+#define ITERATIONS 40   /* 0.8^40 = 1e-4 */
 #define FLUX_ONE 0x1p56 /* fixed point of direct flux: all sides' sum is at most the lights' power, 1 */
 
 typedef struct search {
@@ -38,41 +35,8 @@ typedef struct search {
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
     float threshold;
-    atomic_uint next; /* chunk */
     atomic_ullong shot;
 } search;
-
-typedef void job(search *s, uint32_t item);
-
-typedef struct work {
-    search *s;
-    job *run;
-    uint32_t items;
-} work;
-
-static void *worker(void *user) {
-    const work *w = user;
-    for (;;) {
-        const uint64_t first = (uint64_t)atomic_fetch_add(&w->s->next, 1) * CHUNK;
-        for (uint64_t i = first; i < first + CHUNK && i < w->items; i++)
-            w->run(w->s, (uint32_t)i);
-        if (first + CHUNK >= w->items)
-            return NULL;
-    }
-}
-
-/* Runs `run` for all items on `threads` threads, this one included; on fewer if the system gives no more. */
-static void run_all(search *s, job *run, uint32_t items, unsigned threads) {
-    pthread_t pool[MAX_THREADS];
-    unsigned started = 0;
-    work w = {s, run, items};
-    atomic_store(&s->next, 0);
-    while (started + 1 < threads && pthread_create(pool + started, NULL, worker, &w) == 0)
-        started++;
-    worker(&w);
-    for (unsigned i = 0; i < started; i++)
-        pthread_join(pool[i], NULL);
-}
 
 static double mean_intensity(const vit_light *l) {
     return ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) / 3.0;
@@ -93,7 +57,8 @@ static vec light_direction(const vit_light *l, float u, float v) {
 }
 
 /* Step 1: a ray of one light, from its place in one frame. */
-static void shoot_from_light(search *s, uint32_t ray) {
+static void shoot_from_light(void *user, uint32_t ray) {
+    search *s = user;
     const uint32_t light = ray % s->t->light_count, frame = (uint32_t)((uint64_t)ray * s->frames / LIGHT_RAYS);
     const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
     const double power = mean_intensity(l) * solid_angle(l);
@@ -116,7 +81,8 @@ static uint32_t look(const search *s, uint32_t side, uint32_t i) {
 }
 
 /* Step 2. */
-static void gather(search *s, uint32_t side) {
+static void gather(void *user, uint32_t side) {
+    search *s = user;
     for (uint32_t i = 0; i < GATHER_RAYS; i++)
         s->found[(size_t)side * GATHER_RAYS + i] = look(s, side, i);
     const double area = triangle_area(s->g->triangles + side / 2);
@@ -130,7 +96,8 @@ static float irradiance_of(const search *s, uint32_t found) {
 }
 
 /* Step 3. */
-static void reflect_once(search *s, uint32_t side) {
+static void reflect_once(void *user, uint32_t side) {
+    search *s = user;
     float sum = 0.0f;
     for (uint32_t i = 0; i < GATHER_RAYS; i++)
         sum += irradiance_of(s, s->found[(size_t)side * GATHER_RAYS + i]);
@@ -139,7 +106,7 @@ static void reflect_once(search *s, uint32_t side) {
 
 static void solve(search *s, unsigned threads) {
     for (int i = 0; i < ITERATIONS; i++) {
-        run_all(s, reflect_once, s->sides, threads);
+        parallel_for(threads, s->sides, reflect_once, s);
         float *last = s->irradiance;
         s->irradiance = s->next_irradiance;
         s->next_irradiance = last;
@@ -168,9 +135,10 @@ static float ask_light(const search *s, uint32_t side, uint32_t i) {
     return mean_intensity(l) > 0.0 ? cosine / (d * d) / (float)solid_angle(l) : 0.0f;
 }
 
-/* Step 4. A side that any light shines on is lit, however weakly; the threshold is for reflected light alone. What is enough ends
- * the search. */
-static void ask_again(search *s, uint32_t side) {
+/* Step 4. A side that any light shines on is lit, however weakly; the threshold is for reflected light alone. What is enough
+ * ends the search. */
+static void ask_again(void *user, uint32_t side) {
+    search *s = user;
     float found = s->irradiance[side], reflected = 0.0f;
     uint32_t rays = 0;
     if (s->direct[side] > 0.0f)
@@ -185,10 +153,10 @@ static void ask_again(search *s, uint32_t side) {
 }
 
 static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, void *user) {
-    run_all(s, shoot_from_light, LIGHT_RAYS, threads);
+    parallel_for(threads, LIGHT_RAYS, shoot_from_light, s);
     if (progress)
         progress(user, 0.1);
-    run_all(s, gather, s->sides, threads);
+    parallel_for(threads, s->sides, gather, s);
     if (progress)
         progress(user, 0.5);
     solve(s, threads);
@@ -201,7 +169,7 @@ static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, 
     s->threshold = (float)((double)REACH_THRESHOLD * mean / area);
     if (progress)
         progress(user, 0.6);
-    run_all(s, ask_again, s->sides, threads);
+    parallel_for(threads, s->sides, ask_again, s);
     if (progress)
         progress(user, 1.0);
 }
@@ -233,12 +201,6 @@ static double seconds(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static unsigned thread_count(unsigned asked) {
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    const unsigned threads = asked ? asked : cores > 0 ? (unsigned)cores : 1;
-    return threads < MAX_THREADS ? threads : MAX_THREADS;
-}
-
 static bool allocate(search *s) {
     s->flux = calloc(s->sides, sizeof *s->flux);
     s->found = malloc((size_t)s->sides * GATHER_RAYS * sizeof *s->found);
@@ -264,7 +226,6 @@ vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, ge
     search s = {.t = t, .g = g, .frames = frames, .sides = 2 * m->triangles, .power = total_power(t, frames)};
     if (!(s.power > 0.0))
         return VIT_OK;
-    threads = thread_count(threads);
     vit_status status = VIT_OK;
     if (!allocate(&s) || !ray_scene_open(m, g, threads, &s.rays)) {
         snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");

@@ -11,7 +11,7 @@
 bool grid_make(grid *g, const vec3 *at, size_t stride, uint32_t count, float edge) {
     vec3 hi = {-1e30f, -1e30f, -1e30f};
     *g = (grid){.lo = {1e30f, 1e30f, 1e30f}};
-#define AT(i) ((const vec3 *)(const void *)((const char *)at + (i) * stride))
+#define AT(i) ((const vec3 *)(const void *)((const char *)at + (i)*stride))
     for (uint32_t i = 0; i < count; i++) {
         const vec3 *p = AT(i);
         g->lo = (vec3){float_min(g->lo.x, p->x), float_min(g->lo.y, p->y), float_min(g->lo.z, p->z)};
@@ -32,7 +32,8 @@ bool grid_make(grid *g, const vec3 *at, size_t stride, uint32_t count, float edg
     for (int fill = 0; fill < 2; fill++) { /* counts, then items behind one another */
         for (uint32_t i = 0; i < count; i++) {
             const vec3 p = vec3_sub(*AT(i), g->lo);
-            const size_t box = ((size_t)(int)(p.z * g->inv) * (size_t)g->ny + (size_t)(int)(p.y * g->inv)) * (size_t)g->nx + (size_t)(int)(p.x * g->inv);
+            const size_t box = ((size_t)(int)(p.z * g->inv) * (size_t)g->ny + (size_t)(int)(p.y * g->inv)) * (size_t)g->nx +
+                               (size_t)(int)(p.x * g->inv);
             if (fill)
                 g->item[g->start[box + 1]++] = i;
             else
@@ -58,7 +59,8 @@ static int box_number(float x, float inv, int n) {
 
 void grid_rows(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t begin, uint32_t end), void *user) {
     const vec3 q = vec3_sub(p, g->lo);
-    const int x1 = box_number(q.x + reach, g->inv, g->nx), y1 = box_number(q.y + reach, g->inv, g->ny), z1 = box_number(q.z + reach, g->inv, g->nz);
+    const int x1 = box_number(q.x + reach, g->inv, g->nx), y1 = box_number(q.y + reach, g->inv, g->ny),
+              z1 = box_number(q.z + reach, g->inv, g->nz);
     for (int z = box_number(q.z - reach, g->inv, g->nz); z <= z1; z++)
         for (int y = box_number(q.y - reach, g->inv, g->ny); y <= y1; y++) {
             const size_t row = ((size_t)z * (size_t)g->ny + (size_t)y) * (size_t)g->nx;
@@ -121,8 +123,11 @@ uint64_t zones_key(vec3 p, vec3 n, float edge) {
     const uint64_t axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
     const float sign = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
     p = vec3_along(p, n, edge * 0x1p-6f); /* surfaces on a cube's face lie in the cube in front */
-    const float thin = edge * 0.25f; /* along the normal: a curtain's front and the wall behind it are apart */
-    return (cube(p.x, axis == 0 ? thin : edge) << 40 | cube(p.y, axis == 1 ? thin : edge) << 20 | cube(p.z, axis == 2 ? thin : edge)) << 3 | axis << 1 | (sign < 0.0f ? 1u : 0u) | (uint64_t)1 << 63;
+    const float thin = edge * 0.25f;      /* along the normal: a curtain's front and the wall behind it are apart */
+    return (cube(p.x, axis == 0 ? thin : edge) << 40 | cube(p.y, axis == 1 ? thin : edge) << 20 |
+            cube(p.z, axis == 2 ? thin : edge))
+               << 3 |
+           axis << 1 | (sign < 0.0f ? 1u : 0u) | (uint64_t)1 << 63;
 }
 
 /* What the camera's rays meet, on a grid of pixels and frames. */

@@ -1,5 +1,5 @@
-/* Effective areas: A(x), the integral of the photon kernel about x over the open surfaces whose photons x accepts, in units of its
- * integral over a plane. The sum of photons is divided by it. */
+/* Effective areas: A(x), the integral of the photon kernel about x over the open surfaces whose photons x accepts, in units of
+ * its integral over a plane. The sum of photons is divided by it. */
 #include "zones_parts.h"
 #include <stdlib.h>
 
@@ -8,7 +8,8 @@ typedef float wide __attribute__((vector_size(4 * WIDTH)));
 typedef int32_t wide_i __attribute__((vector_size(4 * WIDTH)));
 #define SMALL 0.25f /* cells of so much of a fine cell's area have one effective area, not three */
 
-/* Points in the order of a grid's boxes, WIDTH side by side; rows of boxes begin at multiples of it, the gaps hold points of no area. */
+/* Points in the order of a grid's boxes, WIDTH side by side; rows of boxes begin at multiples of it, the gaps hold points of no
+ * area. */
 typedef struct area_block {
     wide x, y, z, nx, ny, nz, area;
     wide_i zone; /* bit */
@@ -24,8 +25,8 @@ typedef struct corner {
     const areas *a;
     vec3 p, n;
     uint32_t accept, alike;
-    wide accepted, lit_alike, front; /* sums: zones accepted, lit alike; all surfaces in front, without zones by the share of their photons
-                                      * that count */
+    wide accepted, lit_alike, front; /* sums: zones accepted, lit alike; all surfaces in front, without zones by the share of
+                                      * their photons that count */
 } corner;
 
 static void add_block(corner *c, const area_block *b) {
@@ -72,7 +73,11 @@ static uint32_t integrate(const areas *a, uint32_t cell, float area[3]) {
     for (int m = 0; m < corners; m++) {
         const float b1 = corners == 1 ? (k.b1[0] + k.b1[1] + k.b1[2]) / 3.0f : k.b1[m];
         const float b2 = corners == 1 ? (k.b2[0] + k.b2[1] + k.b2[2]) / 3.0f : k.b2[m];
-        corner c = {.a = a, .p = side_place(z->g, side, b1, b2), .n = side_shading(z->g, side, b1, b2), .accept = accept, .alike = alike};
+        corner c = {.a = a,
+                    .p = side_place(z->g, side, b1, b2),
+                    .n = side_shading(z->g, side, b1, b2),
+                    .accept = accept,
+                    .alike = alike};
         grid_rows(&a->points, c.p, z->radius, add_blocks, &c);
         area[m] = total(c.accepted) / disc;
         lit_alike[m] = total(c.lit_alike) / disc;
@@ -128,7 +133,8 @@ static bool make_blocks(areas *a) {
 
 bool zones_areas(zones *z) {
     areas a = {.z = z};
-    const bool fine = grid_make(&a.points, &z->points[0].p, sizeof *z->points, z->point_count, z->radius * 0.5f) && make_blocks(&a);
+    const bool fine =
+        grid_make(&a.points, &z->points[0].p, sizeof *z->points, z->point_count, z->radius * 0.5f) && make_blocks(&a);
     if (fine)
         parallel_for(z->in->threads, z->c->count, fill_cell, &a);
     grid_free(&a.points);

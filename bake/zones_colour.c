@@ -1,6 +1,6 @@
-/* Zones: 32 colours for patches, so that a receiver can tell by a photon's colour whether to accept it. Patches that the same receivers
- * accept may share a colour; patches of one colour of which a receiver wants some and not others cost the smaller of both weights.
- * Greedy, then improved patch by patch; one thread, in a fixed order. */
+/* Zones: 32 colours for patches, so that a receiver can tell by a photon's colour whether to accept it. Patches that the same
+ * receivers accept may share a colour; patches of one colour of which a receiver wants some and not others cost the smaller of
+ * both weights. Greedy, then improved patch by patch; one thread, in a fixed order. */
 #include "zones_parts.h"
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,8 @@ static void cost(const tally *t, const pair *p, float *sum) {
 
 bool zones_colour(zones *z) {
     tally *tallies = calloc(z->receiver_count + 1u, sizeof *tallies);
-    size_t *first = calloc(z->patch_count + 2u, sizeof *first), *of = malloc((z->pair_count + 1) * sizeof *of); /* pairs by patch */
+    size_t *first = calloc(z->patch_count + 2u, sizeof *first),
+           *of = malloc((z->pair_count + 1) * sizeof *of); /* pairs by patch */
     bool fine = tallies && first && of;
     for (size_t i = 0; fine && i < z->pair_count; i++)
         first[z->pairs[i].patch + 2]++;

@@ -12,14 +12,15 @@
 #define ZONES_TRIES 16u     /* rays that look whether a point is open */
 #define ZONES_FAR 0.05f     /* that are not longer than this part of the scene's diagonal need not be longer than a radius */
 #define ZONES_LIKE 2.5f     /* surfaces whose irradiance differs by a larger factor are unlike lit */
-#define ZONES_LEAST_AREA 0.06f /* with less of the kernel on accepted surfaces, those lit alike count, seen or not; or else all */
+#define ZONES_LEAST_AREA                                                                                                       \
+    0.06f /* with less of the kernel on accepted surfaces, those lit alike count, seen or not; or else all */
 
 /* A small piece of surface, for integrals over area. */
 typedef struct area_point {
-    vec3 p, n;      /* on the surface; unit geometric normal of its side */
-    float area;     /* m2; 0: closed, light does not get there */
+    vec3 p, n;  /* on the surface; unit geometric normal of its side */
+    float area; /* m2; 0: closed, light does not get there */
     uint32_t patch, cell;
-    float flux;     /* W of photons of the mean frame, its share of the cell's */
+    float flux; /* W of photons of the mean frame, its share of the cell's */
 } area_point;
 
 /* Cells of one direction in one cube; photons that land in a patch have one zone. */
@@ -33,17 +34,17 @@ typedef struct patch {
 /* Photons of a patch that a receiver should accept, or not; its weight in the receiver's kernel. */
 typedef struct pair {
     uint32_t receiver, patch;
-    float weight, wrong;   /* of the kernel; cost of accepting what should not be */
-    bool accept, alike;    /* alike: accepted but for sight */
+    float weight, wrong; /* of the kernel; cost of accepting what should not be */
+    bool accept, alike;  /* alike: accepted but for sight */
 } pair;
 
 /* Cells that lie close together and face alike accept the same zones. */
 typedef struct receiver {
-    uint32_t cell;         /* that stands for all */
+    uint32_t cell; /* that stands for all */
     vec3 p, n;
-    uint32_t first, count; /* its pairs */
+    uint32_t first, count;  /* its pairs */
     uint32_t accept, alike; /* zones */
-    bool dark;             /* hardly any light found on it */
+    bool dark;              /* hardly any light found on it */
 } receiver;
 
 typedef struct zones {
@@ -52,18 +53,18 @@ typedef struct zones {
     photon_scene scene;
     photon_rays rays;
     float radius, flatten;
-    uint64_t *seen;            /* hash set of the cubes that the path sees */
+    uint64_t *seen; /* hash set of the cubes that the path sees */
     uint32_t seen_room;
     uint8_t *seen_side;
     cells *c;
     uint32_t *patch_of, *receiver_of; /* a cell; VIT_NONE */
     patch *patches;
     uint32_t patch_count;
-    area_point *points;        /* sorted by patch */
+    area_point *points; /* sorted by patch */
     uint32_t point_count;
     receiver *receivers;
     uint32_t receiver_count;
-    pair *pairs;               /* sorted by receiver */
+    pair *pairs; /* sorted by receiver */
     size_t pair_count;
     zones_found *found;
 } zones;
@@ -71,9 +72,9 @@ typedef struct zones {
 /* A regular grid over things with positions, for neighbours within the radius. */
 typedef struct grid {
     vec3 lo;
-    float inv;                 /* 1 / edge */
+    float inv; /* 1 / edge */
     int nx, ny, nz;
-    uint32_t *start, *item;    /* items of box b: item[start[b]] .. item[start[b + 1] - 1], ascending */
+    uint32_t *start, *item; /* items of box b: item[start[b]] .. item[start[b + 1] - 1], ascending */
 } grid;
 
 bool grid_make(grid *g, const vec3 *at, size_t stride, uint32_t count, float edge);
@@ -87,7 +88,8 @@ void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_
 
 /* Kernel (1 - d^2 / r^2) of a sample at p with normal n for a point at q; 0 outside. */
 float zones_kernel(const zones *z, vec3 p, vec3 n, vec3 q);
-/* A key that is equal for places in one box, `edge` metres wide and a quarter of it deep, that face alike (6 directions). Never 0. */
+/* A key that is equal for places in one box, `edge` metres wide and a quarter of it deep, that face alike (6 directions). Never
+ * 0. */
 uint64_t zones_key(vec3 p, vec3 n, float edge);
 
 /* zones.c: what the camera sees. zones_surface.c: patches, photons, open points. zones_sight.c: receivers and pairs.

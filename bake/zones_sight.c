@@ -1,5 +1,5 @@
-/* Receivers and pairs: which patches' photons a piece of surface should accept. Seen from there, most of the patch must be visible, and
- * lit alike: light that does not reach round a corner should not be averaged round it. */
+/* Receivers and pairs: which patches' photons a piece of surface should accept. Seen from there, most of the patch must be
+ * visible, and lit alike: light that does not reach round a corner should not be averaged round it. */
 #include "zones_parts.h"
 #include <stdlib.h>
 

@@ -1,12 +1,12 @@
-/* Area points, the photons of the path's mean frame, and which points light can reach. A closed surface, the inside of a wall or the floor
- * under a column, must not count as area that light falls on: everything beside it would be too dark. */
+/* Area points, the photons of the path's mean frame, and which points light can reach. A closed surface, the inside of a wall
+ * or the floor under a column, must not count as area that light falls on: everything beside it would be too dark. */
 #include "photons.h"
 #include "zones_parts.h"
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_POINTS (1u << 23)
-#define PILOT_MOST (1u << 20)   /* paths of the pilot */
+#define PILOT_MOST (1u << 20) /* paths of the pilot */
 #define PILOT_LEAST (1u << 15)
 #define PILOT_A_PATCH 12u
 #define PILOT_FRAMES 8u
@@ -53,7 +53,8 @@ static bool place_points(zones *z, nearness *n) {
                 u = sqrtf(u);
                 const float w0 = 1.0f - u, w1 = u * (1.0f - v), w2 = u * v;
                 const float b1 = w0 * k.b1[0] + w1 * k.b1[1] + w2 * k.b1[2], b2 = w0 * k.b2[0] + w1 * k.b2[1] + w2 * k.b2[2];
-                z->points[z->point_count++] = (area_point){side_place(z->g, side, b1, b2), side_face(z->g, side), (float)(1.0 / density), mine, i, 0.0f};
+                z->points[z->point_count++] =
+                    (area_point){side_place(z->g, side, b1, b2), side_face(z->g, side), (float)(1.0 / density), mine, i, 0.0f};
             }
         }
         if (pass == 0) {
@@ -97,7 +98,8 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
     photons_light *lights = calloc(s->lights + 1u, sizeof *lights);
     vit_status status = lights ? VIT_OK : VIT_FAILED;
     for (uint32_t f = 0; f < probes && status == VIT_OK; f++) {
-        const vit_light *frame = z->in->tracks->lights + (size_t)(probes > 1 ? f * (s->frames - 1) / (probes - 1) : 0) * s->lights;
+        const vit_light *frame =
+            z->in->tracks->lights + (size_t)(probes > 1 ? f * (s->frames - 1) / (probes - 1) : 0) * s->lights;
         uint32_t count = 0, found = 0;
         for (uint32_t i = 0; i < s->lights; i++)
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)

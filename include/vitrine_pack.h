@@ -70,4 +70,14 @@ typedef struct vit_pack_entry {
  * `why` may be NULL. */
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
 
+/* The effect `bit` and all that make no sense without it. */
+static inline uint32_t vit_effects_upon(uint32_t bit) {
+#define X(effect, needed)                                                                                                        \
+    if (bit & (uint32_t)VIT_EFFECT_BIT_##needed)                                                                                 \
+        bit |= (uint32_t)VIT_EFFECT_BIT_##effect;
+    VIT_EFFECT_NEEDS(X)
+#undef X
+    return bit;
+}
+
 #endif

@@ -36,7 +36,7 @@ static inline lv3 photon_bounce(lv3 n, lf a, lf b)
 }
 
 #if VIT_EFFECT_SEQUENCE
-constant uint photon_alpha[6] = {0xe60e2b73u, 0xcebd76dbu, 0xb9c9aa3bu, 0xa6f5777fu, 0x9609c71fu, 0x86d516e5u}; /* 2^32 / phi^(k + 1), phi^7 = phi + 1, made odd */
+constant uint photon_alpha[6] = VIT_BOUNCE_ALPHA;
 #endif
 
 /* Two numbers in [0, 1) for the reflection at a hit. */

@@ -59,20 +59,16 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
 
 /* An effect makes no sense without the one that it refines. */
 static vit_status check_needs(const vit_scene *s, vit_text *why) {
-#define NEEDS(effect, needed)                                                                                                  \
-    { #effect, VIT_EFFECT_BIT_##effect, #needed, VIT_EFFECT_BIT_##needed }
     static const struct {
         const char *name;
         vit_u32 bit;
         const char *needed_name;
         vit_u32 needed;
-    } needs[] = {NEEDS(SPOT, LIGHTS),         NEEDS(RANGE, LIGHTS),      NEEDS(PHOTONS, LIGHTS),
-                 NEEDS(TRACED, PHOTONS),      NEEDS(LIST, PHOTONS),      NEEDS(BUCKETS, PHOTONS),
-                 NEEDS(RAW_BUCKETS, BUCKETS), NEEDS(FLATTENED, PHOTONS), NEEDS(NORMAL_KEYS, PHOTONS),
-                 NEEDS(SPARSE, PHOTONS),      NEEDS(SPARSE_16, SPARSE),    NEEDS(NEAREST, TEXTURES),
-                 NEEDS(TRILINEAR, TEXTURES),
-                 NEEDS(ZONES, PHOTONS),        NEEDS(AREA, PHOTONS),          NEEDS(SEQUENCE, PHOTONS)};
-#undef NEEDS
+    } needs[] = {
+#define X(effect, needed) {#effect, VIT_EFFECT_BIT_##effect, #needed, VIT_EFFECT_BIT_##needed},
+        VIT_EFFECT_NEEDS(X)
+#undef X
+    };
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
             return pack_refuse(why, "section META: effect %s without %s", needs[i].name, needs[i].needed_name);

@@ -5,19 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Effects that direct light does not depend on. One that is missing here costs a picture more, and nothing else. */
-#define INDIRECT_EFFECTS                                                                                                       \
-    (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                           \
-     VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS | VIT_EFFECT_BIT_ZONES |               \
-     VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE | VIT_EFFECT_BIT_SPARSE | VIT_EFFECT_BIT_SPARSE_16)
-
 /* Of all that direct light is made from. Lights differ in their photon paths alone. */
 static uint64_t key_of(const sweep_pack *pack) {
     static const int seen[] = {VIT_SECTION_CAMS, VIT_SECTION_GEOM, VIT_SECTION_ATTR, VIT_SECTION_MATL,
                                VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS};
     const vit_pack_entry *table = (const void *)((const char *)pack->bytes + sizeof(vit_pack_header));
     const vit_scene *meta = (const void *)((const char *)pack->bytes + table[VIT_SECTION_META].offset);
-    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~(uint32_t)INDIRECT_EFFECTS,
+    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~vit_effects_upon(VIT_EFFECT_BIT_PHOTONS),
                                                         (uint64_t)meta->width << 32 | meta->height};
     for (size_t i = 0; i < sizeof seen / sizeof seen[0]; i++)
         parts[i + 2] = table[seen[i]].hash;
