@@ -46,7 +46,7 @@ LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 .DELETE_ON_ERROR:
 .PHONY: all tools help deps demo run-demo cost run-cost test bench clean install format
 all: deps
-	@$(MAKE) --no-print-directory tools
+	@$(MAKE) $(SIDE_BY_SIDE) tools
 tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
 
 include tests/deps.mk
@@ -96,6 +96,7 @@ include tests/test.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
+	@$(MAKE) $(SIDE_BY_SIDE) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	@$(MAKE) --no-print-directory run-demo
 run-demo: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	@mkdir -p build/demo

@@ -86,6 +86,8 @@ static bool merge_quality(const place *at, const config_setting_t *group, scene_
         return fields_fail(at, group, "smoothing \"raw\" needs estimate \"buckets\"");
     if ((seen & FIELD_BIT(QUALITY_FLATTEN)) && !g.flattened)
         return fields_fail(at, group, "'flatten' needs kernel \"flattened\"");
+    if (g.q.light_zones && !g.q.zones)
+        return fields_fail(at, group, "'light_zones' needs zones = true");
     if (!g.flattened)
         g.q.flatten = 0;
     else if (!(g.q.flatten > 0))

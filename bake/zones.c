@@ -1,5 +1,6 @@
 #include "zones.h"
 #include "zones_parts.h"
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -218,12 +219,23 @@ static vit_status find_seen(zones *z, vit_text *why) {
             if (l.side[i] != VIT_NONE)
                 z->seen_side[l.side[i]] = 1;
         status = cells_divide(z->g, z->in->triangles, cell_edge, z, z->c, why);
+        z->seen_at = status == VIT_OK ? malloc((z->c->count + 1u) * sizeof *z->seen_at) : NULL;
+        z->seen_off = status == VIT_OK ? malloc((z->c->count + 1u) * sizeof *z->seen_off) : NULL;
+        status = z->seen_at && z->seen_off ? status : VIT_FAILED;
+        for (uint32_t i = 0; status == VIT_OK && i < z->c->count; i++)
+            z->seen_off[i] = FLT_MAX;
     }
     for (uint32_t i = 0; status == VIT_OK && i < looks; i++) {
         if (l.side[i] == VIT_NONE)
             continue;
         const uint32_t cell = cells_at(z->c, l.side[i], l.weight[i][0], l.weight[i][1]);
-        const uint64_t key = zones_key(cells_center(z->c, z->g, cell), side_face(z->g, l.side[i]), ZONES_COARSE * z->radius);
+        const vec3 center = cells_center(z->c, z->g, cell);
+        const uint64_t key = zones_key(center, side_face(z->g, l.side[i]), ZONES_COARSE * z->radius);
+        const vec3 off = vec3_sub(side_place(z->g, l.side[i], l.weight[i][0], l.weight[i][1]), center);
+        if (vec3_dot(off, off) < z->seen_off[cell]) {
+            z->seen_off[cell] = vec3_dot(off, off);
+            memcpy(z->seen_at[cell], l.weight[i], sizeof l.weight[i]);
+        }
         uint32_t slot = slot_of(key, z->seen_room);
         while (z->seen[slot] && z->seen[slot] != key)
             slot = (slot + 1) & (z->seen_room - 1);
@@ -272,6 +284,8 @@ static void release(zones *z) {
     photon_rays_close(&z->rays);
     free(z->seen);
     free(z->seen_side);
+    free(z->seen_at);
+    free(z->seen_off);
     free(z->patch_of);
     free(z->receiver_of);
     free(z->patches);

@@ -60,40 +60,44 @@ static uint32_t coded(float area) {
     return q < (float)VIT_CELL_AREA_LEAST ? VIT_CELL_AREA_LEAST : q > 511.0f ? 511u : (uint32_t)q;
 }
 
+static bool enough(const float area[3]) {
+    return area[0] + area[1] + area[2] >= 3.0f * ZONES_LEAST_AREA;
+}
+
 /* Effective areas at the cell's corners. Returns the zones that it accepts. */
 static uint32_t integrate(const areas *a, uint32_t cell, float area[3]) {
     const zones *z = a->z;
-    const uint32_t side = z->c->side_of[cell], accept = z->in->zones ? z->receivers[z->receiver_of[cell]].accept : 0u;
+    const receiver *r = z->receivers + z->receiver_of[cell];
+    const uint32_t side = z->c->side_of[cell];
     const cell_corners k = cells_corners(z->c, cell);
     const float disc = 0.5f * PHOTON_PI * z->radius * z->radius; /* the kernel's integral over a plane */
     const float fine = ZONES_FINE * z->radius;
-    const int corners = cells_area(z->c, z->g, cell) < SMALL * fine * fine ? 1 : 3;
-    const uint32_t alike = z->in->zones ? z->receivers[z->receiver_of[cell]].alike : 0u;
-    float front[3], lit_alike[3];
-    for (int m = 0; m < corners; m++) {
-        const float b1 = corners == 1 ? (k.b1[0] + k.b1[1] + k.b1[2]) / 3.0f : k.b1[m];
-        const float b2 = corners == 1 ? (k.b2[0] + k.b2[1] + k.b2[2]) / 3.0f : k.b2[m];
+    const bool small = cells_area(z->c, z->g, cell) < SMALL * fine * fine;
+    float front[3], accepted[3], lit_alike[3];
+    for (int m = 0; m < 3; m++) {
+        if (small && m > 0) {
+            front[m] = front[0];
+            accepted[m] = accepted[0];
+            lit_alike[m] = lit_alike[0];
+            continue;
+        }
+        const float b1 = small ? (k.b1[0] + k.b1[1] + k.b1[2]) / 3.0f : k.b1[m];
+        const float b2 = small ? (k.b2[0] + k.b2[1] + k.b2[2]) / 3.0f : k.b2[m];
         corner c = {.a = a,
                     .p = side_place(z->g, side, b1, b2),
                     .n = side_shading(z->g, side, b1, b2),
-                    .accept = accept,
-                    .alike = alike};
+                    .accept = r->accept,
+                    .alike = r->alike};
         grid_rows(&a->points, c.p, z->radius, add_blocks, &c);
-        area[m] = total(c.accepted) / disc;
+        accepted[m] = total(c.accepted) / disc;
         lit_alike[m] = total(c.lit_alike) / disc;
         front[m] = total(c.front) / disc;
     }
-    for (int m = corners; m < 3; m++) {
-        area[m] = area[0];
-        lit_alike[m] = lit_alike[0];
-        front[m] = front[0];
-    }
-    /* Where there is hardly anything to gather from, better light that is not seen than none. */
-    const bool enough = z->in->zones && area[0] + area[1] + area[2] >= 3.0f * ZONES_LEAST_AREA;
-    const bool stand_in = z->in->zones && lit_alike[0] + lit_alike[1] + lit_alike[2] >= 3.0f * ZONES_LEAST_AREA;
+    /* Where hardly anything is seen, light from surfaces lit alike is better than none; from all of them it would be worse. */
+    const bool stand_in = z->in->zones && !enough(accepted) && enough(lit_alike);
     for (int m = 0; m < 3; m++)
-        area[m] = float_max(enough ? area[m] : stand_in ? lit_alike[m] : front[m], 0.5f * ZONES_LEAST_AREA);
-    return enough ? accept : stand_in ? alike : z->receivers[z->receiver_of[cell]].dark ? 0u : ~0u;
+        area[m] = float_max(!z->in->zones ? front[m] : stand_in ? lit_alike[m] : accepted[m], 0.5f * ZONES_LEAST_AREA);
+    return !z->in->zones ? ~0u : stand_in ? r->alike : r->accept;
 }
 
 static void fill_cell(void *user, uint32_t i) {

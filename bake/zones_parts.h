@@ -11,9 +11,10 @@
 #define ZONES_POINTS 450.0f /* area points on a square of the radius */
 #define ZONES_TRIES 16u     /* rays that look whether a point is open */
 #define ZONES_FAR 0.05f     /* that are not longer than this part of the scene's diagonal need not be longer than a radius */
-#define ZONES_LIKE 2.5f     /* surfaces whose irradiance differs by a larger factor are unlike lit */
+#define ZONES_NEAR 0.12f    /* radii about a surface's point in which its irradiance is measured */
+#define ZONES_LIKE 2.0f     /* surfaces whose irradiance differs by a larger factor are unlike lit */
 #define ZONES_LEAST_AREA                                                                                                       \
-    0.06f /* with less of the kernel on accepted surfaces, those lit alike count, seen or not; or else all */
+    0.06f /* with less of the kernel on accepted surfaces, those lit alike count, seen or not, if there are any */
 
 /* A small piece of surface, for integrals over area. */
 typedef struct area_point {
@@ -44,7 +45,6 @@ typedef struct receiver {
     vec3 p, n;
     uint32_t first, count;  /* its pairs */
     uint32_t accept, alike; /* zones */
-    bool dark;              /* hardly any light found on it */
 } receiver;
 
 typedef struct zones {
@@ -56,6 +56,8 @@ typedef struct zones {
     uint64_t *seen; /* hash set of the cubes that the path sees */
     uint32_t seen_room;
     uint8_t *seen_side;
+    float (*seen_at)[2]; /* a cell: b1, b2 on its side of the point next to its middle that the path sees */
+    float *seen_off;     /* its distance from the middle, squared; FLT_MAX: none */
     cells *c;
     uint32_t *patch_of, *receiver_of; /* a cell; VIT_NONE */
     patch *patches;

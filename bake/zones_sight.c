@@ -1,6 +1,7 @@
 /* Receivers and pairs: which patches' photons a piece of surface should accept. Seen from there, most of the patch must be
  * visible, and lit alike: light that does not reach round a corner should not be averaged round it. */
 #include "zones_parts.h"
+#include <float.h>
 #include <stdlib.h>
 
 #define LIFT 0.05f    /* rays start so many radii above the surface, or in the middle of the free space there */
@@ -9,7 +10,6 @@
 #define DARK 0.5f     /* of accepting too little: less harm than too much */
 #define MOST_HARM 16.0f
 #define NOISE 0.02 /* of the mean irradiance */
-#define DIM 5.0f   /* of the noise: darker surfaces take no light that cannot be told to be theirs */
 
 typedef struct sight {
     zones *z;
@@ -103,12 +103,12 @@ static void visit_patch(void *user, uint32_t number) {
     v->count++;
 }
 
-/* Irradiance from the photons within a fifth of the radius, on this surface: what hangs close before it is another. */
+/* Irradiance from the photons close by, on this surface: what hangs close before it is another. */
 static void visit_point(void *user, uint32_t i) {
     visit *v = user;
     const area_point *q = v->s->z->points + i;
     const vec3 o = vec3_sub(q->p, v->r->p);
-    const float near = v->s->z->radius * 0.2f, off = vec3_dot(o, v->r->n);
+    const float near = v->s->z->radius * ZONES_NEAR, off = vec3_dot(o, v->r->n);
     const float w = 1.0f - fmaf(off * off, 24.0f, vec3_dot(o, o)) / (near * near);
     if (w > 0.0f && vec3_dot(q->n, v->r->n) > 0.5f) {
         v->flux += w * q->flux;
@@ -127,12 +127,12 @@ static void fill_pairs(void *user, uint32_t i) {
     const sight *s = user;
     receiver *r = s->z->receivers + i;
     visit v = {.s = s, .r = r, .from = lift(s->z, r->p, r->n), .out = s->z->pairs + s->first[i]};
-    grid_near(&s->points, r->p, s->z->radius * 0.2f, visit_point, &v);
+    grid_near(&s->points, r->p, s->z->radius * ZONES_NEAR, visit_point, &v);
     v.irradiance = v.area > 0.0f ? v.flux / v.area : 0.0f;
-    r->dark = v.irradiance < DIM * s->least;
     grid_near(&s->patches, r->p, s->z->radius * (1.0f + ZONES_COARSE), visit_patch, &v);
 }
 
+/* The largest cell of a group stands for it, of those that the path is known to see if there are any. */
 static void choose_receivers(zones *z) {
     for (uint32_t i = 0; i < z->receiver_count; i++)
         z->receivers[i].cell = VIT_NONE;
@@ -140,12 +140,25 @@ static void choose_receivers(zones *z) {
         if (z->receiver_of[i] == VIT_NONE)
             continue;
         receiver *r = z->receivers + z->receiver_of[i];
-        if (r->cell != VIT_NONE && !(cells_area(z->c, z->g, i) > cells_area(z->c, z->g, r->cell)))
-            continue;
-        r->cell = i;
-        r->p = cells_center(z->c, z->g, i);
-        r->n = side_face(z->g, z->c->side_of[i]);
+        const bool seen = z->seen_off[i] < FLT_MAX, had = r->cell != VIT_NONE && z->seen_off[r->cell] < FLT_MAX;
+        if (r->cell == VIT_NONE || seen > had || (seen == had && cells_area(z->c, z->g, i) > cells_area(z->c, z->g, r->cell)))
+            r->cell = i;
     }
+}
+
+/* A receiver looks from its cell's middle, unless that is hidden from where the path sees the cell: it may lie inside a wall.
+ */
+static void place_receiver(void *user, uint32_t i) {
+    const zones *z = user;
+    receiver *r = z->receivers + i;
+    const uint32_t side = z->c->side_of[r->cell];
+    r->p = cells_center(z->c, z->g, r->cell);
+    r->n = side_face(z->g, side);
+    if (z->seen_off[r->cell] == FLT_MAX)
+        return;
+    const vec3 seen = side_place(z->g, side, z->seen_at[r->cell][0], z->seen_at[r->cell][1]);
+    if (!sees(z, lift(z, seen, r->n), lift(z, r->p, r->n)))
+        r->p = seen;
 }
 
 bool zones_pairs(zones *z) {
@@ -167,6 +180,7 @@ bool zones_pairs(zones *z) {
         }
         s.least = area > 0.0 ? (float)(NOISE * flux / area) : 0.0f;
         choose_receivers(z);
+        parallel_for(z->in->threads, z->receiver_count, place_receiver, z);
         if (z->in->zones) {
             parallel_for(z->in->threads, z->patch_count, open_eyes, &s);
             parallel_for(z->in->threads, z->receiver_count, count_pairs, &s);

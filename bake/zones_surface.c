@@ -8,7 +8,7 @@
 #define MOST_POINTS (1u << 23)
 #define PILOT_MOST (1u << 20) /* paths of the pilot */
 #define PILOT_LEAST (1u << 15)
-#define PILOT_A_PATCH 12u
+#define PILOT_A_PATCH 32u
 #define PILOT_FRAMES 8u
 #define PILOT_FIRST 0x40000000u /* path numbers, and so random numbers, that playing does not use */
 
@@ -158,20 +158,28 @@ static void look_out(void *user, uint32_t i) {
     p->area = 0.0f;
 }
 
-/* Sorts the open points by patch, keeping their order, and sums patches up. */
+/* Sorts the open points by patch, keeping their order, and sums patches up. A cell's photons belong to its points; those of
+ * cells too small to have any, to all points of their patch. */
 static bool settle_points(zones *z, const float *flux) {
     area_point *sorted = malloc((z->point_count + 1u) * sizeof *sorted);
     uint32_t *open_of_cell = calloc(z->c->count, sizeof *open_of_cell);
-    if (!sorted || !open_of_cell) {
+    float *pointless = calloc(z->patch_count + 1u, sizeof *pointless); /* W */
+    if (!sorted || !open_of_cell || !pointless) {
         free(sorted);
         free(open_of_cell);
+        free(pointless);
         return false;
     }
     for (uint32_t i = 0; i < z->point_count; i++) {
         z->patches[z->points[i].patch].count += z->points[i].area > 0.0f;
         open_of_cell[z->points[i].cell] += z->points[i].area > 0.0f;
     }
+    for (uint32_t i = 0; i < z->c->count; i++)
+        if (open_of_cell[i] == 0 && z->patch_of[i] != VIT_NONE)
+            pointless[z->patch_of[i]] += flux[i];
     for (uint32_t i = 0, at = 0; i < z->patch_count; i++) {
+        if (z->patches[i].count)
+            pointless[i] /= (float)z->patches[i].count;
         z->patches[i].first = at;
         at += z->patches[i].count;
         z->patches[i].count = 0;
@@ -182,7 +190,7 @@ static bool settle_points(zones *z, const float *flux) {
         if (!(p.area > 0.0f))
             continue;
         patch *of = z->patches + p.patch;
-        p.flux = flux[p.cell] / (float)open_of_cell[p.cell];
+        p.flux = flux[p.cell] / (float)open_of_cell[p.cell] + pointless[p.patch];
         of->center = vec3_along(of->center, p.p, 1.0f);
         of->area += p.area;
         z->found->open_area += (double)p.area;
@@ -193,6 +201,7 @@ static bool settle_points(zones *z, const float *flux) {
         if (z->patches[i].count)
             z->patches[i].center = vec3_scale(z->patches[i].center, 1.0f / (float)z->patches[i].count);
     free(open_of_cell);
+    free(pointless);
     free(z->points);
     z->points = sorted;
     z->point_count = kept;

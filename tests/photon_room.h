@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROOM_QUADS = 12, ROOM_MATERIALS = 10, ROOM_IMAGES = 2, ROOM_LIGHTS = 2, ROOM_IMAGE_SIZE = 64 };
+enum { ROOM_QUADS = 600, ROOM_MATERIALS = 10, ROOM_IMAGES = 2, ROOM_LIGHTS = 2, ROOM_IMAGE_SIZE = 64 };
 enum { WALL_LEFT, WALL_RIGHT, WALL_FLOOR, WALL_CEILING, WALL_BACK, WALL_FRONT, WALLS }; /* also their materials */
 
 typedef struct room {

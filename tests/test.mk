@@ -21,16 +21,22 @@ $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
 
-.PHONY: run-tests run-bench run-sanitized
+# Tests run side by side, each with its output in one piece; those that take longest first, so that none is left to run alone.
+JOBS ?= $(shell nproc)
+SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
+LONGEST := $(patsubst %,$(B)/tests/golden/test_%,effects furnace bounds cost bake_twice same_bits work_counts) $(B)/tests/unit/test_zones
+RUNS := $(addprefix run/,$(LONGEST) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
+.PHONY: run-tests run-bench run-sanitized $(RUNS)
 test: deps
-	@$(MAKE) --no-print-directory config=sanitize run-sanitized
-	@$(MAKE) --no-print-directory run-tests
+	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize run-sanitized
+	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
+	@$(MAKE) $(SIDE_BY_SIDE) run-tests
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix $(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
+SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
 run-sanitized: $(SANITIZED)
-	@for t in $(SANITIZED); do echo "== $$t"; $$t || exit 1; done
-run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(TEST_PROGRAMS)
-	@for t in $(TEST_PROGRAMS); do echo "== $$t"; $$t || exit 1; done
+run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS)
+$(RUNS): run/%: %
+	@echo "== $*"; $*
 
 bench: deps
 	@$(MAKE) --no-print-directory run-bench

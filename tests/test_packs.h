@@ -4,7 +4,9 @@
 
 #include "tool_run.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define TEST_PACKS VIT_BUILD_DIR "/test-packs"
 #define TEST_SCENES VIT_BUILD_DIR "/scenes"
@@ -128,14 +130,27 @@ static inline int test_packs_later(const struct stat *a, const struct stat *b) {
                                                   : a->st_mtim.tv_nsec > b->st_mtim.tv_nsec;
 }
 
+/* Tests run side by side: only one at a time makes what belongs to `name`. Returns what ends it with close(). */
+static inline int test_packs_lock(const char *name) {
+    char path[256];
+    (void)mkdir(TEST_PACKS, 0777);
+    (void)snprintf(path, sizeof path, TEST_PACKS "/%s.lock", name);
+    const int file = open(path, O_RDWR | O_CREAT, 0666);
+    assert_true(file >= 0);
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    assert_int_equal(fcntl(file, F_SETLKW, &whole), 0);
+    return file;
+}
+
 /* Makes the folder and the scene files in it. */
 static inline void test_packs_begin(void) {
-    (void)mkdir(TEST_PACKS, 0777);
+    const int lock = test_packs_lock("files");
     for (size_t i = 0; i < sizeof test_packs_files / sizeof test_packs_files[0]; i++)
         test_packs_put(test_packs_files[i].name, test_packs_files[i].text, strlen(test_packs_files[i].text));
     unsigned char holes[HOLES_BYTES];
     test_packs_holes(holes);
     test_packs_put("holes.tga", holes, sizeof holes);
+    (void)close(lock);
 }
 
 static inline size_t test_packs_find(const char *name) {
@@ -155,17 +170,19 @@ static inline const char *test_pack(const char *name) {
     (void)snprintf(path, sizeof path, TEST_PACKS "/%s.vit", name);
     const char *const from[] = {TOOL_BAKE, test_packs[i].input, TEST_PACKS "/room.obj", TEST_PACKS "/room.mtl",
                                 TEST_PACKS "/holes.tga"};
+    const int lock = test_packs_lock(name);
     int fresh = stat(path, &pack) == 0;
     for (size_t k = 0; k < sizeof from / sizeof from[0]; k++) {
         struct stat s;
         assert_int_equal(stat(from[k], &s), 0);
         fresh = fresh && test_packs_later(&pack, &s);
     }
-    if (fresh)
-        return path;
     static tool_run r;
-    tool(&r, TOOL_BAKE " %s -o %s --quiet %s", test_packs[i].input, path, test_packs[i].options);
-    tool_succeeds(&r);
+    if (!fresh) {
+        tool(&r, TOOL_BAKE " %s -o %s --quiet %s", test_packs[i].input, path, test_packs[i].options);
+        tool_succeeds(&r);
+    }
+    (void)close(lock);
     return path;
 }
 

@@ -321,6 +321,7 @@ REFUSES(normals_of_a_word_are_refused, 3, "'normal_bits' must be 16 or 8", GOOD 
 REFUSES(one_sample_in_none_is_refused, 3, "'indirect_samples'", GOOD "quality: { indirect_samples = 0; };\n")
 REFUSES(a_radius_that_is_a_word_is_refused, 3, "or \"auto\"", GOOD "quality: { radius = \"big\"; };\n")
 REFUSES(raw_lists_are_refused, 3, "needs estimate \"buckets\"", GOOD "quality: { smoothing = \"raw\"; };\n")
+REFUSES(light_zones_without_zones_are_refused, 3, "needs zones", GOOD "quality: { light_zones = true; };\n")
 REFUSES(a_flattening_of_a_sphere_is_refused, 3, "needs kernel", GOOD "quality: { flatten = 3; };\n")
 REFUSES(an_error_with_a_line_feed_in_it_stays_one_line, 3, "got \"a?b\"", GOOD "lights = ( { type = \"a\\nb\"; " KEYS "} );\n")
 
@@ -491,6 +492,7 @@ int main(void) {
         T(a_filter_that_is_a_number_is_refused),
         T(a_radius_that_is_a_word_is_refused),
         T(raw_lists_are_refused),
+        T(light_zones_without_zones_are_refused),
         T(a_flattening_of_a_sphere_is_refused),
         T(an_error_with_a_line_feed_in_it_stays_one_line),
         T(a_missing_scene_is_refused),
