@@ -1,5 +1,6 @@
 /* One table holds the options: parser and --help are made from it. Adding an option is adding a row. */
 #include "cost_options.h"
+#include "converge.h"
 #include "knobs.h"
 #include "sweep.h"
 #include <math.h>
@@ -26,6 +27,9 @@ static const option options[] = {
     {"--by", "nmse|relmse", ERRORS, AT(relmse), 0, 0, "the error by which --fit judges (default nmse)"},
     {"--write", "SCENE.cfg", WORD, AT(write), 0, 0,
      "puts the choice into this file's quality block; the rest stays byte for byte"},
+    {"--converge", "N", WHOLE, AT(converge), CONVERGE_LEAST, CONVERGE_MOST,
+     "instead of trying settings: N steps with ever more photons of smaller radius; converge.csv, converge.svg"},
+    {"--shrink", "E", REAL, AT(shrink), 0, 1, "of --converge: the radius goes with paths^-E (default 1/3; 0: it stays)"},
     {"--knobs", "A,B,...", WORD, AT(knobs), 0, 0, "turns only these (list below)"},
     {"--settings", "N", WHOLE, AT(settings), 1, 100000, "settings tried, at most (default 96)"},
     {"--size", "WxH", SIZE, AT(width), 0, 0, "output size instead of the scene's"},
@@ -114,13 +118,19 @@ static vit_status check(const cost_options *o, vit_text *why) {
         return usage(why, "--fit-work", "one budget at a time, not --fit as well");
     if (o->write && !(o->fit > 0) && !(o->fit_work > 0))
         return usage(why, "--write", "there is no choice to write without --fit or --fit-work");
+    if (o->converge && (!o->output || o->fit > 0 || o->fit_work > 0 || o->knobs))
+        return usage(why, "--converge", "goes with -o FOLDER, and without --fit, --fit-work and --knobs");
     if (!o->output && !(o->fit > 0) && !(o->fit_work > 0))
         return usage(why, o->input, "what for? -o FOLDER for a report, or --fit MS");
     return VIT_OK;
 }
 
 vit_status cost_options_parse(int argc, char **argv, cost_options *out, vit_text *why) {
-    *out = (cost_options){.settings = SWEEP_SETTINGS, .repeats = SWEEP_REPEATS, .max_samples = SWEEP_SAMPLES, .frame = -1};
+    *out = (cost_options){.settings = SWEEP_SETTINGS,
+                          .shrink = CONVERGE_SHRINK,
+                          .repeats = SWEEP_REPEATS,
+                          .max_samples = SWEEP_SAMPLES,
+                          .frame = -1};
     for (int i = 1; i < argc; i++) {
         char wants[128];
         int k = 0;
@@ -151,6 +161,7 @@ void cost_options_help(void) {
          "  vitrine-cost scene.cfg -o report                          the whole price list; open report/index.html\n"
          "  vitrine-cost scene.cfg -o report --knobs photons,radius --size 640x360\n"
          "  vitrine-cost scene.cfg --fit 33 --write scene.cfg         the best setting for 33 ms a frame on this device\n"
+         "  vitrine-cost scene.cfg --converge 6 -o report             does the error go to 0 with more photons, and how fast?\n"
          "  mpirun -n 8 vitrine-cost scene.cfg -o report              all ranks make the reference; rank 0 does the rest\n");
     for (int i = 0; i < OPTIONS; i++) {
         char both[64];

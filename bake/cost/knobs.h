@@ -29,10 +29,10 @@ typedef struct knobs_input {
 
 /* Settings, no two alike, the same for the same calls. */
 typedef struct knob_list {
-    knob_setting *settings; /* `count` of them */
+    knob_setting *settings; /* `count` of them, malloc'ed */
     uint32_t count, most;
     knob_setting base;
-    struct knob_values *values; /* what each knob can be set to */
+    struct knob_values *values; /* what each knob can be set to; NULL: there are no knobs, the list is complete */
 } knob_list;
 
 /* The default and each knob alone, value by value. VIT_USAGE: `only` names no knob. On failure nothing is left to close. */

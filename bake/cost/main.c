@@ -1,4 +1,5 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
+#include "converge.h"
 #include "cost_options.h"
 #include "fit.h"
 #include "machine.h"
@@ -50,6 +51,16 @@ static vit_status fit(const cost_options *o, const cost_results *r, vit_text *wh
     return o->write ? rewrite_file(o->write, r->settings[chosen].values, why) : VIT_OK;
 }
 
+static vit_status converge(const cost_options *o, const sweep_input *in, vit_text *why) {
+    converge_results r;
+    const converge_plan steps = {o->converge, o->shrink};
+    vit_status status = converge_run(in, &steps, &r, why);
+    if (status != VIT_OK || r.count == 0)
+        return status;
+    converge_print(&r, stdout);
+    return converge_write(&r, o->output, why);
+}
+
 static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_text *why) {
     char folder[4096];
     const sweep_input in = {.pipeline = p,
@@ -68,6 +79,8 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
     vit_status status = o->write ? rewrite_check(o->write, why) : VIT_OK; /* before the work rather than after it */
     if (status == VIT_OK)
         status = load(o, p, why);
+    if (status == VIT_OK && o->converge)
+        return converge(o, &in, why);
     if (status == VIT_OK)
         status = sweep_run(&in, r, why);
     if (status != VIT_OK || r->count == 0)

@@ -12,7 +12,8 @@ bool paths_open(const reference_input *in, unsigned threads, path_scene *out) {
     *out = (path_scene){.meta = meta,
                         .camera = (const vit_camera *)data[VIT_SECTION_CAMS] + in->frame,
                         .direct_only = in->direct_only,
-                        .bounces = in->bounces};
+                        .bounces = in->bounces,
+                        .face_normals = in->face_normals};
     if (meta->lights > 0)
         out->lights = (const vit_light *)data[VIT_SECTION_LITE] + (size_t)in->frame * meta->lights;
     /* An atlas is read only here; its pointers are not const since bake/atlas.c fills them. */
@@ -128,7 +129,7 @@ static bool survives(double weight[3], uint32_t random) {
 static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited, path_sums *out,
                   uint64_t *rays) {
     double weight[3] = {1, 1, 1};
-    vec3 o = v->position, n = v->normal;
+    vec3 o = v->position, n = p->face_normals ? v->face : v->normal;
     for (uint32_t hit = 1; hit < p->bounces || !only_limited; hit++) {
         float a, b, t = 0.0f;
         const uint32_t dimension = pcg(seed ^ pcg(hit));

@@ -12,6 +12,7 @@ typedef struct path_scene {
     const vit_light *lights;
     const bool *direct_only; /* may be NULL */
     uint32_t bounces;
+    bool face_normals; /* of reference_input */
     atlas atlas;
     photon_scene scene;
     photon_rays rays;

@@ -58,7 +58,9 @@ static void view_chunk(void *user, uint32_t chunk, uint64_t *rays) {
 static void path_chunk(void *user, uint32_t chunk, uint64_t *rays) {
     rendering *r = user;
     for (uint32_t i = chunk * CHUNK; i < chunk_end(r, chunk); i++) {
-        const uint32_t seed = pcg(pixel_x(r, i) ^ pcg(pixel_y(r, i) ^ pcg(r->in->frame)));
+        uint32_t seed = pcg(pixel_x(r, i) ^ pcg(pixel_y(r, i) ^ pcg(r->in->frame)));
+        if (r->in->face_normals)
+            seed = pcg(~seed);
         memcpy(r->round[i].direct, r->views[i].direct, sizeof r->round[i].direct);
         for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
             paths_trace(&r->scene, r->views + i, pcg(seed + q), r->state.rounds * PATHS, PATHS, false, r->round[i].paths + q,

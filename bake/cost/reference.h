@@ -24,6 +24,8 @@ typedef struct reference_input {
     uint32_t bounces; /* hits of the limited paths: up to bounces - 1 reflections, as vit_scene.bounces */
     double target;    /* stop when the standard error's NMSE (mean variance / squared mean of the total) is below this, > 0 */
     uint32_t max_samples; /* and at so many paths a pixel in any case; whole rounds, 1 .. REFERENCE_MOST */
+    bool face_normals;    /* the first hit's indirect irradiance is about its geometric normal too, as photons count it;
+                           * independent    random numbers, so that the two pictures' errors are */
     unsigned threads;  /* 0: all cores, shared with the ranks on this machine; changes no bit, nor does the number of ranks */
     const char *cache; /* folder for finished and unfinished references, NULL: none. One there may have more samples */
     const volatile sig_atomic_t *cancel; /* a signal handler sets it: the work is saved and VIT_FAILED returned; may be NULL */

@@ -14,8 +14,7 @@ static vit_status fail_folder(vit_text *why, const char *folder, int error) {
     return VIT_FAILED;
 }
 
-/* The folder and those above it. */
-static vit_status make_folder(const char *folder, vit_text *why) {
+vit_status report_folder(const char *folder, vit_text *why) {
     char path[PATH_MAX];
     const size_t length = strlen(folder);
     if (length == 0 || length >= sizeof path)
@@ -35,21 +34,23 @@ static vit_status make_folder(const char *folder, vit_text *why) {
     return VIT_OK;
 }
 
-typedef vit_status part_fn(const cost_results *r, FILE *to, vit_text *why);
-
-static vit_status csv_part(const cost_results *r, FILE *to, vit_text *why) {
+static vit_status csv_part(const void *r, FILE *to, vit_text *why) {
     (void)why;
     report_csv(r, to);
     return VIT_OK;
 }
 
-static vit_status json_part(const cost_results *r, FILE *to, vit_text *why) {
+static vit_status json_part(const void *r, FILE *to, vit_text *why) {
     (void)why;
     report_json(r, to);
     return VIT_OK;
 }
 
-static vit_status write_part(const cost_results *r, const char *folder, const char *name, part_fn *part, vit_text *why) {
+static vit_status page_part(const void *r, FILE *to, vit_text *why) {
+    return report_page(r, to, why);
+}
+
+vit_status report_file(const void *results, const char *folder, const char *name, report_part_fn *part, vit_text *why) {
     char path[PATH_MAX];
     const int length = snprintf(path, sizeof path, "%s/%s", folder, name);
     if (length < 0 || (size_t)length >= sizeof path)
@@ -57,7 +58,7 @@ static vit_status write_part(const cost_results *r, const char *folder, const ch
     char *bytes = NULL;
     size_t size = 0;
     FILE *to = open_memstream(&bytes, &size);
-    vit_status status = to ? part(r, to, why) : VIT_FAILED;
+    vit_status status = to ? part(results, to, why) : VIT_FAILED;
     const bool whole = to && !ferror(to);
     if ((to && fclose(to) != 0) || !whole) {
         (void)snprintf(why->text, sizeof why->text, "%s: out of memory", name);
@@ -70,10 +71,10 @@ static vit_status write_part(const cost_results *r, const char *folder, const ch
 }
 
 vit_status report_write(const cost_results *r, const char *folder, vit_text *why) {
-    vit_status status = make_folder(folder, why);
+    vit_status status = report_folder(folder, why);
     if (status == VIT_OK)
-        status = write_part(r, folder, "report.csv", csv_part, why);
+        status = report_file(r, folder, "report.csv", csv_part, why);
     if (status == VIT_OK)
-        status = write_part(r, folder, "report.json", json_part, why);
-    return status == VIT_OK ? write_part(r, folder, "index.html", report_page, why) : status;
+        status = report_file(r, folder, "report.json", json_part, why);
+    return status == VIT_OK ? report_file(r, folder, "index.html", page_part, why) : status;
 }

@@ -74,12 +74,24 @@ static char *slurp(FILE *from) {
     return text;
 }
 
-/* "rgb( 1, 1, N)" becomes "var(--cN)". Returns what follows, NULL if this is no such colour. */
-static const char *copy_colour(const char *text, FILE *to) {
+/* The light page's --cN, from the style sheet, without its space and semicolon. */
+static void print_light_colour(int n, FILE *to) {
+    char name[16];
+    const int length = snprintf(name, sizeof name, "--c%d:", n);
+    const char *at = strstr(report_css, name);
+    if (at)
+        (void)fprintf(to, "%.*s", (int)strcspn(at + length + 1, ";"), at + length + 1);
+}
+
+/* "rgb( 1, 1, N)" becomes "var(--cN)", or the colour itself. Returns what follows, NULL if this is no such colour. */
+static const char *copy_colour(const char *text, const report_drawing *d, FILE *to) {
     int red, green, blue, length = 0;
     if (sscanf(text, "rgb( %d , %d , %d )%n", &red, &green, &blue, &length) != 3 || length == 0 || red != 1 || green != 1)
         return NULL;
-    (void)fprintf(to, "var(--c%d)", blue);
+    if (d->alone)
+        print_light_colour(blue, to);
+    else
+        (void)fprintf(to, "var(--c%d)", blue);
     return text + length;
 }
 
@@ -104,12 +116,17 @@ static bool copy_drawing(const char *svg, const report_drawing *d, FILE *to) {
     const char *at = strstr(svg, "<g id=\"gnuplot_canvas\""), *end = strstr(svg, "</svg>");
     if (!at || !end)
         return false;
-    (void)fprintf(to, "<svg id=\"%s\" class=\"plot\" viewBox=\"0 0 %u %u\" role=\"img\" aria-label=\"", d->id, d->width,
-                  d->height);
+    if (d->alone)
+        (void)fprintf(to, "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
+    (void)fprintf(to, "<svg id=\"%s\" class=\"plot\" viewBox=\"0 0 %u %u\" role=\"img\" ", d->id, d->width, d->height);
+    if (d->alone)
+        (void)fprintf(to, "xmlns=\"http://www.w3.org/2000/svg\" width=\"%u\" height=\"%u\" style=\"background: white\" ",
+                      d->width, d->height);
+    (void)fputs("aria-label=\"", to);
     text_html(to, d->alt);
     (void)fputs("\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n", to);
     while (at < end) {
-        const char *next = *at == 'r'                                ? copy_colour(at, to)
+        const char *next = *at == 'r'                                ? copy_colour(at, d, to)
                            : *at == '<' || *at == '\'' || *at == '"' ? copy_name(at, d->id, to)
                                                                      : NULL;
         if (next)

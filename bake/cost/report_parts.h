@@ -100,6 +100,7 @@ void report_place_labels(report_label *labels, uint32_t count, const report_span
 typedef struct report_drawing {
     const char *id, *alt;   /* of the element; what it shows, for those who do not see it */
     uint32_t width, height; /* pixels */
+    bool alone;             /* a file of its own, without a style sheet: #0101NN become the light page's colours */
 } report_drawing;
 vit_status report_gnuplot(const report_drawing *d, const char *script, FILE *to, vit_text *why);
 
@@ -118,6 +119,11 @@ void report_axis_print(FILE *to, const char *letter, report_axis a, const char *
 vit_status report_plot_error(const cost_results *r, report_measure by, FILE *to, vit_text *why);
 vit_status report_plot_tracer(const cost_results *r, report_measure by, FILE *to, vit_text *why);
 vit_status report_plot_stack(const cost_results *r, FILE *to, vit_text *why);
+
+/* ---- report.c: files, made in memory and put under their names whole ---- */
+vit_status report_folder(const char *folder, vit_text *why); /* makes it, and those above it */
+typedef vit_status report_part_fn(const void *results, FILE *to, vit_text *why);
+vit_status report_file(const void *results, const char *folder, const char *name, report_part_fn *part, vit_text *why);
 
 /* ---- the page: report_page.c joins report_tables.c (tables), report_look.c (pictures) and the plots ---- */
 void report_table_settings(const cost_results *r, FILE *to);

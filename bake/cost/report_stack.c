@@ -148,7 +148,7 @@ vit_status report_plot_stack(const cost_results *r, FILE *to, vit_text *why) {
     give_colours(&s);
     print_legend(&s, to);
     const report_drawing d = {"plot-stack", "Milliseconds a pass, stacked, for each setting", WIDTH,
-                              HEAD + FOOT + ROW * r->count};
+                              HEAD + FOOT + ROW * r->count, false};
     char *script = NULL;
     size_t size = 0;
     FILE *text = open_memstream(&script, &size);

@@ -39,6 +39,8 @@ typedef struct cost_results {
     cost_error direct;         /* the default's direct light against the reference's: what is no estimate's fault */
     double direct_largest;     /* largest difference of one value / mean of the reference's direct light */
     cost_error truncation;     /* limited against unlimited reference: what `bounces` leaves out */
+    cost_error normals;        /* if asked for: indirect light about geometric normals against the reference, both pictures' noise
+                                * taken off: nmse, relmse and bias alone; 0 where no surface is smooth */
     double path_tracer_ms;     /* one path a pixel of the whole frame by the reference's path tracer, timed among the settings */
     double path_tracer_nmse;   /* its error at one path a pixel; falls as 1 / paths */
     double path_tracer_relmse;

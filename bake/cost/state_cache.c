@@ -7,8 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define METHOD 1u /* raise when the same input gives other bits than before */
-#define ROOM 4096 /* bytes of a path */
+#define FACE_NORMALS 0x80000000u /* with METHOD: of reference_input */
+#define METHOD 1u                /* raise when the same input gives other bits than before */
+#define ROOM 4096                /* bytes of a path */
 
 typedef struct cache_header {
     char magic[8];
@@ -29,7 +30,7 @@ static key_settings settings_of(const reference_input *in) {
     const vit_scene *s = in->sections->data[VIT_SECTION_META];
     key_settings k;
     memset(&k, 0, sizeof k); /* padding, if any, is hashed too */
-    k.method = METHOD;
+    k.method = METHOD | (in->face_normals ? FACE_NORMALS : 0u);
     k.round = REFERENCE_ROUND;
     k.frame = in->frame;
     k.every = in->every;

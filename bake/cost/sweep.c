@@ -24,7 +24,8 @@ static vit_status fail(vit_status status, vit_text *why, const char *cause) {
 
 /* Evenly spread over the path, ascending; the one nearest to the compared frame gives way to it. */
 static vit_status choose_frames(sweep *s, vit_text *why) {
-    const uint32_t all = (uint32_t)s->in->pipeline->scene.frames, count = all < SWEEP_FRAMES ? all : SWEEP_FRAMES;
+    const uint32_t all = (uint32_t)s->in->pipeline->scene.frames, most = s->in->frames ? s->in->frames : SWEEP_FRAMES,
+                   count = all < most ? all : most;
     const int64_t want = s->in->frame < 0 ? all / 2 : s->in->frame;
     if (want >= all) {
         snprintf(why->text, sizeof why->text, "--frame: the path has frames 0 to %u", all - 1);
@@ -104,7 +105,8 @@ static vit_status list_settings(sweep *s, vit_text *why) {
     const scene_quality *q = &s->in->pipeline->scene.quality;
     const knobs_input in = {
         .base = q, .radius = (double)s->base.plan.scene.radius, .only = s->in->knobs, .most = s->in->settings};
-    vit_status status = knobs_open(&in, &s->knobs, why);
+    vit_status status =
+        s->in->list ? s->in->list(s->in->list_user, q, in.radius, &s->knobs, why) : knobs_open(&in, &s->knobs, why);
     if (status != VIT_OK)
         return status;
     s->out->settings = calloc(s->knobs.most, sizeof *s->out->settings);
@@ -182,6 +184,8 @@ static vit_status run(sweep *s, vit_text *why) {
     if (spread_any(status != VIT_OK))
         return status != VIT_OK ? status : fail(VIT_FAILED, why, "another rank failed");
     status = compare(s, why);
+    if (status == VIT_OK && s->in->normals)
+        status = sweep_normals(s, why);
     const bool first_rank = spread_rank() == 0;
     spread_end(); /* the other ranks must not take time from what is timed */
     if (status != VIT_OK || !first_rank)

@@ -13,6 +13,12 @@
 #define SWEEP_LEAST_REPEATS 7
 #define SWEEP_GRID 60000 /* grid points, at most, if `every` is left open */
 
+struct knob_list;
+/* Fills the empty *out; `base`: the scene's own quality block, radius: what it has in the end if it is "auto", m. The first
+ * setting is what the others' times are scaled by. On failure nothing is left to close. */
+typedef vit_status sweep_list_fn(const void *user, const scene_quality *base, double radius, struct knob_list *out,
+                                 vit_text *why);
+
 typedef struct sweep_input {
     pipeline *pipeline; /* loaded; its device and threads are used */
     const char *knobs;  /* names with commas between; NULL: all */
@@ -24,7 +30,12 @@ typedef struct sweep_input {
         reference_error;  /* NMSE that the reference's standard error must fall below; 0: a tenth of the smallest error found */
     uint32_t max_samples; /* of the reference, paths a pixel */
     const char *cache;    /* reference_input.cache */
-    uint64_t memory;      /* bytes that the packs, and the buffers of what is open at once, may take; 2 settings in any case */
+    uint32_t frames;      /* of the path that are played, 1 .. SWEEP_FRAMES; 0: SWEEP_FRAMES */
+    sweep_list_fn *list;  /* makes the settings; NULL: from the knobs, and by searching */
+    const void *list_user;
+    uint32_t timed;  /* the first so many settings are timed; 0: all */
+    bool normals;    /* fills out->normals: a second reference is made */
+    uint64_t memory; /* bytes that the packs, and the buffers of what is open at once, may take; 2 settings in any case */
     const volatile sig_atomic_t *cancel;
 } sweep_input;
 

@@ -54,6 +54,9 @@ void sweep_compare_direct(sweep *s);
  * reference. */
 vit_status sweep_search(sweep *s, vit_text *why);
 
+/* sweep_normals.c: fills out->normals. All ranks of an MPI run call it. */
+vit_status sweep_normals(sweep *s, vit_text *why);
+
 /* sweep_times.c: ms of every setting, and the path tracer's. */
 vit_status sweep_times(sweep *s, vit_text *why);
 

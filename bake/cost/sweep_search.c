@@ -49,6 +49,8 @@ static vit_status add_round(sweep *s, vit_text *why) {
 vit_status sweep_search(sweep *s, vit_text *why) {
     const uint32_t alone = s->knobs.count, left = s->knobs.most - alone;
     progress_stage(s->progress, "settings: packs, pictures");
+    if (!s->knobs.values)
+        return take_over(s, why);
     vit_status status = knobs_spread(&s->knobs, alone + left / 3, why);
     if (status == VIT_OK)
         status = take_over(s, why);

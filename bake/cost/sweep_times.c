@@ -21,11 +21,15 @@ static uint64_t bytes_of(const cost_setting *c) {
     return c->device_bytes + c->pack_bytes;
 }
 
+static uint32_t settings_timed(const sweep *s) {
+    return s->in->timed > 0 && s->in->timed < s->out->count ? s->in->timed : s->out->count;
+}
+
 /* At least one setting beside the default. */
 static uint32_t batch_end(const sweep *s, uint32_t first) {
     uint64_t bytes = bytes_of(&s->out->settings[0]);
     uint32_t end = first;
-    while (end < s->out->count && (end == first || bytes + bytes_of(&s->out->settings[end]) <= s->in->memory))
+    while (end < settings_timed(s) && (end == first || bytes + bytes_of(&s->out->settings[end]) <= s->in->memory))
         bytes += bytes_of(&s->out->settings[end++]);
     return end;
 }
@@ -137,7 +141,7 @@ static vit_status time_batch(sweep *s, batch *b, tracer *traced, vit_text *why) 
 
 static vit_status time_batches(sweep *s, tracer *traced, vit_text *why) {
     vit_status status = VIT_OK;
-    for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < s->out->count);) {
+    for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < settings_timed(s));) {
         batch b = {.first = first, .end = batch_end(s, first)};
         status = time_batch(s, &b, traced, why);
         for (uint32_t i = b.first; i < b.end; i++)

@@ -270,6 +270,10 @@ static void mistakes_are_named(void **state) {
     tool_refuses(&run, "vitrine-cost", VIT_USAGE, "--repeats");
     tool(&run, TOOL_COST " " SCENE " --fit 33 --fit-work 5");
     tool_refuses(&run, "vitrine-cost", VIT_USAGE, "one budget at a time");
+    tool(&run, TOOL_COST " " SCENE " --converge 6");
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "--converge: goes with -o");
+    tool(&run, TOOL_COST " " SCENE " --converge 4 -o " LAB "/none");
+    tool_refuses(&run, "vitrine-cost", VIT_USAGE, "a whole number, 5 to 12");
     tool(&run, TOOL_COST " no-such.cfg -o " LAB "/none");
     assert_int_equal(run.code, VIT_BAD_INPUT);
     tool(&run, TOOL_COST " --help");

@@ -177,32 +177,64 @@ static void one_plate_lights_another_as_their_form_factor_says(void **state) {
     lab_close(&l);
 }
 
-/* Two squares that share an edge, lit by the sun at 45 degrees to both: each gets from the other what their form factor says.
- */
-static void the_sides_of_a_corner_light_each_other(void **state) {
-    (void)state;
+/* Two squares that share an edge, lit by the sun at 45 degrees to both. Frame 0 sees the floor, frame 1 the wall. `bend`: how
+ * far the floor's shading normals lean towards the wall, as a slope. */
+static void open_corner(reference_lab *l, float bend) {
     static const float eye[3] = {0.6f, 0.5f, 0.5f}, corner[3] = {0, 0, 0}, top[3] = {0, 0, 1}, x[3] = {1, 0, 0},
                        y[3] = {0, 1, 0}, back[3] = {0, 0, -1}, z[3] = {0, 0, 1}, sun[3] = {0.70710678f, 0.70710678f, 0};
     room *r = room_empty(0);
-    reference_lab l;
     room_paint(r, 0, 0.5f, 0.5f, 0.5f);
     room_paint(r, 1, 0.8f, 0.8f, 0.8f);
     room_quad(r, top, x, back, 0);
+    for (uint32_t i = 0; i < 4; i++) {
+        r->normal[3 * i] = -bend / sqrtf(1 + bend * bend);
+        r->normal[3 * i + 1] = 1 / sqrtf(1 + bend * bend);
+    }
     room_quad(r, corner, y, z, 1);
     r->lights[0] = sunlight(sun);
-    lab_open(&l, r, 32, 1, 2);
-    lab_look(&l, 0, eye, top, x, back);
-    lab_look(&l, 1, eye, corner, y, z);
-    l.in.max_samples = 2048;
-    /* Howell, C-14, for squares. */
-    const double factor = (LAB_PI / 2 - sqrt(2) * atan(1 / sqrt(2)) + log(0.75) / 4) / LAB_PI;
+    lab_open(l, r, 32, 1, 2);
+    lab_look(l, 0, eye, top, x, back);
+    lab_look(l, 1, eye, corner, y, z);
+    l->in.max_samples = 2048;
+}
+
+/* Howell's catalogue, C-14, for squares. */
+static double square_corner_factor(void) {
+    return (LAB_PI / 2 - sqrt(2) * atan(1 / sqrt(2)) + log(0.75) / 4) / LAB_PI;
+}
+
+/* Each gets from the other what their form factor says. */
+static void the_sides_of_a_corner_light_each_other(void **state) {
+    (void)state;
+    reference_lab l;
+    open_corner(&l, 0);
     reference floor_seen = lab_render(&l, 0), wall_seen = lab_render(&l, 1);
     expect("corner, floor: the squares' form factor",
-           lab_irradiance(&floor_seen, floor_seen.limited, 0, 0.5) / (0.8 * sqrt(0.5)), factor);
+           lab_irradiance(&floor_seen, floor_seen.limited, 0, 0.5) / (0.8 * sqrt(0.5)), square_corner_factor());
     expect("corner, wall: the squares' form factor", lab_irradiance(&wall_seen, wall_seen.limited, 0, 0.8) / (0.5 * sqrt(0.5)),
-           factor);
+           square_corner_factor());
     reference_free(&floor_seen);
     reference_free(&wall_seen);
+    lab_close(&l);
+}
+
+/* A floor whose shading normals lean towards the wall gets more light from it, but not about its geometric normals. Direct
+ * light is about shading normals either way. */
+static void about_geometric_normals_shading_normals_do_not_count_for_indirect_light(void **state) {
+    (void)state;
+    reference_lab l;
+    open_corner(&l, 0.6f);
+    reference shading = lab_render(&l, 0);
+    l.in.face_normals = true;
+    reference faces = lab_render(&l, 0);
+    const double bent = lab_irradiance(&shading, shading.limited, 0, 0.5) / (0.8 * sqrt(0.5));
+    printf("floor with bent shading normals: %.3f of what its form factor says\n", bent / square_corner_factor());
+    assert_true(bent > 1.1 * square_corner_factor());
+    expect("the same about geometric normals", lab_irradiance(&faces, faces.limited, 0, 0.5) / (0.8 * sqrt(0.5)),
+           square_corner_factor());
+    assert_memory_equal(shading.direct, faces.direct, sizeof(double) * 3 * 32 * 32);
+    reference_free(&shading);
+    reference_free(&faces);
     lab_close(&l);
 }
 
@@ -212,6 +244,7 @@ int main(void) {
         cmocka_unit_test(what_goes_in_is_absorbed),
         cmocka_unit_test(one_plate_lights_another_as_their_form_factor_says),
         cmocka_unit_test(the_sides_of_a_corner_light_each_other),
+        cmocka_unit_test(about_geometric_normals_shading_normals_do_not_count_for_indirect_light),
     };
     return cmocka_run_group_tests_name("reference", tests, NULL, NULL);
 }
