@@ -44,6 +44,9 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
+    p->kept = calloc(1, sizeof *p->kept);
+    if (status == VIT_OK && !p->kept)
+        status = out_of_memory(why);
     if (status == VIT_OK) {
         progress_stage(p->progress, "atlas");
         status = atlas_pack(&p->model, &p->atlas, why);
@@ -52,6 +55,9 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
 }
 
 void pipeline_free(pipeline *p) {
+    if (p->kept)
+        zones_kept_free(p->kept);
+    free(p->kept);
     atlas_free(&p->atlas);
     geometry_free(&p->geometry);
     bvh_free(&p->bvh);
@@ -127,8 +133,8 @@ static void measuring(void *user, const char *stage, double fraction) {
     progress_step(p, fraction);
 }
 
-/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. Zones and areas come later:
- * they depend on the radius. */
+/* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. Zones and areas come
+ * later: they depend on the radius. */
 static vit_status settle_radius(bounds_input *in, pipeline_packed *out, vit_text *why) {
     double stored;
     const uint32_t effects = in->scene->effects;
@@ -191,7 +197,9 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .threads = p->threads,
                             .progress = step,
                             .user = p->progress};
-    vit_status status = zones_bake(&in, &out->cells, &out->zones, why);
+    const bool own = out->geometry == &p->geometry; /* triangles of another shape are not to be mixed up with these */
+    vit_status status =
+        own ? zones_kept_bake(p->kept, &in, &out->cells, &out->zones, why) : zones_bake(&in, &out->cells, &out->zones, why);
     out->plan.scene.cells = out->cells.count;
     free(gives);
     return status == VIT_OK && c->quality.zones ? trace_photons(p, out, why) : status;

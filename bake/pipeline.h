@@ -11,7 +11,7 @@
 #include "quantise.h"
 #include "reach.h"
 #include "tracks.h"
-#include "zones.h"
+#include "zones_kept.h"
 
 /* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
 typedef struct pipeline {
@@ -27,6 +27,7 @@ typedef struct pipeline {
     geometry geometry;
     reach reach;
     atlas atlas;
+    zones_kept *kept;
 } pipeline;
 
 typedef struct pipeline_choice {
@@ -53,7 +54,7 @@ typedef struct pipeline_packed {
     const reach *reach;
     plan plan;
     tracks tracks; /* of the frames that were chosen */
-    cells cells;      /* zones and effective areas; none without them */
+    cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
     vit_photon *photons;
     vit_gold *gold;

@@ -146,19 +146,15 @@ static void choose_receivers(zones *z) {
     }
 }
 
-/* A receiver looks from its cell's middle, unless that is hidden from where the path sees the cell: it may lie inside a wall.
- */
-static void place_receiver(void *user, uint32_t i) {
-    const zones *z = user;
-    receiver *r = z->receivers + i;
-    const uint32_t side = z->c->side_of[r->cell];
-    r->p = cells_center(z->c, z->g, r->cell);
-    r->n = side_face(z->g, side);
-    if (z->seen_off[r->cell] == FLT_MAX)
-        return;
-    const vec3 seen = side_place(z->g, side, z->seen_at[r->cell][0], z->seen_at[r->cell][1]);
-    if (!sees(z, lift(z, seen, r->n), lift(z, r->p, r->n)))
-        r->p = seen;
+/* A receiver looks from the point next to its cell's middle that the path sees: the middle may lie inside a wall. */
+static void place_receivers(zones *z) {
+    for (uint32_t i = 0; i < z->receiver_count; i++) {
+        receiver *r = z->receivers + i;
+        const uint32_t side = z->c->side_of[r->cell];
+        const float *at = z->seen_at[r->cell];
+        r->p = z->seen_off[r->cell] < FLT_MAX ? side_place(z->g, side, at[0], at[1]) : cells_center(z->c, z->g, r->cell);
+        r->n = side_face(z->g, side);
+    }
 }
 
 bool zones_pairs(zones *z) {
@@ -180,7 +176,7 @@ bool zones_pairs(zones *z) {
         }
         s.least = area > 0.0 ? (float)(NOISE * flux / area) : 0.0f;
         choose_receivers(z);
-        parallel_for(z->in->threads, z->receiver_count, place_receiver, z);
+        place_receivers(z);
         if (z->in->zones) {
             parallel_for(z->in->threads, z->patch_count, open_eyes, &s);
             parallel_for(z->in->threads, z->receiver_count, count_pairs, &s);

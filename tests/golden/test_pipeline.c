@@ -96,10 +96,47 @@ static void another_size_is_what_that_size_bakes_to_on_its_own(void **state) {
     pipeline_free(&small.pipeline);
 }
 
+/* Zones and areas are kept from pack to pack; a fresh pipeline, which has kept nothing, makes the same. */
+static void kept_zones_are_those_that_would_be_baked(void **state) {
+    static const char *const settings[] = {"zones = true; effective_area = true; radius = 1.0;",
+                                           "zones = true; effective_area = true; radius = 1.0; photons = 1000;",
+                                           "zones = true; effective_area = true; radius = 0.8;",
+                                           "zones = true; light_zones = true; effective_area = true; radius = 1.0;",
+                                           "zones = true; effective_area = false; radius = 1.0;",
+                                           "zones = true; effective_area = true; radius = 1.0; bounces = 2;",
+                                           "zones = true; effective_area = true; radius = 1.0; kernel = \"flattened\";",
+                                           "zones = true; effective_area = true; radius = 1.0; vertex_bits = 16;"};
+    enum { SETTINGS = sizeof settings / sizeof settings[0] };
+    lab l;
+    (void)state;
+    lab_open(&l, 96, 64);
+    for (size_t i = 0; i < SETTINGS; i++) {
+        lab fresh;
+        pipeline_packed of_many, alone;
+        pipeline_choice choice = pipeline_default(&l.pipeline);
+        assert_int_equal(scene_quality_apply(settings[i], &choice.quality, &l.why), VIT_OK);
+        lab_open(&fresh, 96, 64);
+        pack(&fresh, &choice, &alone);
+        pack(&l, &choice, &of_many);
+        assert_int_equal(of_many.size, alone.size);
+        assert_memory_equal(of_many.bytes, alone.bytes, alone.size);
+        pipeline_packed_free(&of_many);
+        pipeline_packed_free(&alone);
+        pipeline_free(&fresh.pipeline);
+    }
+    /* only what photons and vertex_bits changed was not kept */
+    uint32_t kept = 0;
+    for (int i = 0; i < ZONES_KEPT; i++)
+        kept += l.pipeline.kept->one[i].asked > 0;
+    assert_int_equal(kept, SETTINGS - 2);
+    pipeline_free(&l.pipeline);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_chosen_frame_has_the_bits_that_it_has_among_all),
         cmocka_unit_test(a_pack_does_not_depend_on_those_made_before),
+        cmocka_unit_test(kept_zones_are_those_that_would_be_baked),
         cmocka_unit_test(another_size_is_what_that_size_bakes_to_on_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
