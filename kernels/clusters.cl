@@ -1,6 +1,5 @@
 /* Pass 5: view-sample clusters. METHODS.md P, steps 4 to 6, with existence as one bit a key: the bits are the leaf masks of the
  * hierarchy, and each set bit also sets its ancestors' bits, so that one prefix sum over all masks numbers all nodes. */
-#if VIT_EFFECT_PHOTONS
 
 /* Where bit i of x (axis 0), y (1) or z (2) lies in a key: see vit_scene.key_bits. */
 static inline uint key_bit(global const vit_scene *scene, uint axis, uint i)
@@ -20,24 +19,23 @@ static inline uint key_spread(global const vit_scene *scene, uint axis, uint bit
 /* Depth slice of view depth z, counted from slice_first. METHODS.md P (2.6). */
 static inline li cluster_slice(global const vit_scene *scene, lf z)
 {
-    lf k = floor(l_log2(l_max(z, (lf)scene->slice_near) / scene->slice_near) * scene->slice_scale);
-    return L_TRUNC(l_min(k, (lf)8191.0f)) - (int)scene->slice_first;
+    lf k = floor(l_log2(l_max(z, L_F(scene->slice_near)) / scene->slice_near) * scene->slice_scale);
+    return L_TRUNC(l_min(k, L_F(8191.0f))) - (int)scene->slice_first;
 }
 
-#if VIT_EFFECT_NORMAL_KEYS
 /* Direction on a cube, 6 faces x 3 x 3: 0..53. */
 static inline li cluster_direction(lv3 n)
 {
     lf ax = fabs(n.x), ay = fabs(n.y), az = fabs(n.z);
     li on_x = L_GE(ax, ay) & L_GE(ax, az), on_y = ~on_x & L_GE(ay, az);
     lf major = l_sel(on_x, n.x, l_sel(on_y, n.y, n.z)), u = l_sel(on_x, n.y, n.x), v = l_sel(on_x | on_y, n.z, n.y);
-    lf scale = 1.5f / l_max(fabs(major), (lf)1e-9f);
-    li iu = min(L_TRUNC(fma(u, scale, (lf)1.5f)), (li)2), iv = min(L_TRUNC(fma(v, scale, (lf)1.5f)), (li)2);
-    li face = l_sel_i(on_x, (li)0, l_sel_i(on_y, (li)2, (li)4)) + (L_LT(major, (lf)0) & 1);
+    lf scale = 1.5f / l_max(fabs(major), L_F(1e-9f));
+    li iu = min(L_TRUNC(fma(u, scale, L_F(1.5f))), L_I(2)), iv = min(L_TRUNC(fma(v, scale, L_F(1.5f))), L_I(2));
+    li face = l_sel_i(on_x, L_I(0), l_sel_i(on_y, L_I(2), L_I(4))) + (L_LT(major, L_F(0)) & 1);
     return face * 9 + iv * 3 + iu;
 }
-#endif
 
+#if VIT_WITH(PHOTONS)
 /* Clears what the frame counts up. */
 kernel void clear_masks(global const vit_scene *scene, global uint *masks, volatile global uint *counters)
 {
@@ -48,6 +46,8 @@ kernel void clear_masks(global const vit_scene *scene, global uint *masks, volat
         counters[i] = i == VIT_COUNTER_slice_min ? 0xffffffffu : 0;
 }
 
+#endif
+
 static inline void mark_key(global const vit_scene *scene, volatile global uint *masks, uint key)
 {
     for (uint level = scene->levels; level-- > 0;) {
@@ -56,43 +56,42 @@ static inline void mark_key(global const vit_scene *scene, volatile global uint 
     }
 }
 
+#if VIT_WITH(PHOTONS)
 /* Keys of the samples, and their existence bits. A work-item takes `run` samples in a row. */
 kernel void cluster_keys(global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint run, global const uint *hit_triangle,
-                         global const sample_coordinate *position, global const uint *normal, global const uint *albedo, volatile global uint *masks,
+                         global const float *position, global const uint *normal, global const uint *albedo, volatile global uint *masks,
                          global uint *keys, volatile global uint *counters)
 {
     uint n = scene->samples, begin = (uint)get_global_id(0) * run, end = min(begin + run, n), per_tile = scene->tile * scene->tile;
     global const vit_camera *camera = cameras + frame;
     lv3 eye = lv3_load(camera->eye), forward = lv3_load(camera->forward);
     uint known = VIT_NONE; /* neighbours mostly share a key: mark a run of equal ones once */
-    li nearest = (li)0x7fffffff, farthest = (li)-1;
+    li nearest = L_I(0x7fffffff), farthest = L_I(-1);
     for (uint first = begin; first < end; first += VIT_LANES) {
         uint tile = first / per_tile;
         uint base = key_spread(scene, 0, scene->key_bits_x, tile % scene->tiles_x) | key_spread(scene, 1, scene->key_bits_y, tile / scene->tiles_x);
-        li valid = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), (li)(int)VIT_NONE);
-#if VIT_EFFECT_DARK_SIDES
-        valid &= L_EQ(L_AS_INT(L_LOAD(albedo + first) & VIT_SAMPLE_DARK), (li)0);
-#endif
-        li key = (li)(int)VIT_NONE;
+        li valid = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+        if (VIT_EFFECT_DARK_SIDES)
+            valid &= L_EQ(L_AS_INT(L_LOAD(albedo + first) & VIT_SAMPLE_DARK), L_I(0));
+        li key = L_I((int)VIT_NONE);
         if (l_any(valid)) {
             lv3 p = sample_position(scene, position, first);
             li slice = cluster_slice(scene, lv3_dot(lv3_sub(p, eye), forward));
             nearest = min(nearest, l_sel_i(valid, slice, nearest));
             farthest = max(farthest, l_sel_i(valid, slice, farthest));
-            slice = min(max(slice, (li)0), (li)(int)(scene->slice_count - 1));
-            key = (li)(int)base;
+            slice = min(max(slice, L_I(0)), L_I((int)(scene->slice_count - 1)));
+            key = L_I((int)base);
             for (uint i = 0; i < scene->key_bits_z; i++)
                 key |= ((slice >> (int)i) & 1) << (int)key_bit(scene, 2, i);
-#if VIT_EFFECT_NORMAL_KEYS
-            key |= cluster_direction(l_decode_normal(L_LOAD(normal + first)));
-#endif
-            key = l_sel_i(valid, key, (li)(int)VIT_NONE);
+            if (VIT_EFFECT_NORMAL_KEYS)
+                key |= cluster_direction(l_decode_normal(L_LOAD(normal + first)));
+            key = l_sel_i(valid, key, L_I((int)VIT_NONE));
             while (l_any(valid)) {
-                uint k = (uint)l_reduce_max(l_sel_i(valid, key, (li)-1)); /* keys have at most 30 bits */
+                uint k = (uint)l_reduce_max(l_sel_i(valid, key, L_I(-1))); /* keys have at most 30 bits */
                 if (k != known)
                     mark_key(scene, masks, k);
                 known = k;
-                valid &= L_NE(key, (li)(int)k);
+                valid &= L_NE(key, L_I((int)k));
             }
         }
         L_STORE(L_AS_UINT(key), keys + first);
@@ -169,11 +168,11 @@ kernel void make_nodes(global const vit_scene *scene, uint max_nodes, global con
         node_count[child] = grandchildren;
         for (uint k = 0; k < 12; k++)
             VIT_PLANE(bounds, k, max_nodes)[child] = (k % 6) < 3 ? 0x7fffffff : (int)0x80000000;
-#if VIT_EFFECT_ZONES
-        VIT_PLANE(bounds, 12, max_nodes)[child] = 0;
-#endif
+        if (VIT_EFFECT_ZONES)
+            VIT_PLANE(bounds, 12, max_nodes)[child] = 0;
     }
 }
+#endif
 
 /* Node index of a key's cluster; at least max_nodes if it was dropped. */
 static inline uint cluster_of(global const vit_scene *scene, global const uint *masks, global const uint *prefix, uint key)
@@ -192,9 +191,8 @@ static inline uint cluster_if_any(global const vit_scene *scene, global const ui
 /* accepted: zones of the samples, 0 without zones. */
 static inline void widen(volatile global int *bounds, uint max_nodes, uint node, const int *lo, const int *hi, uint accepted)
 {
-#if VIT_EFFECT_ZONES
-    atomic_or(VIT_PLANE(bounds, 12, max_nodes) + node, (int)accepted);
-#endif
+    if (VIT_EFFECT_ZONES)
+        atomic_or(VIT_PLANE(bounds, 12, max_nodes) + node, (int)accepted);
     for (int k = 0; k < 3; k++) {
         atomic_min(VIT_PLANE(bounds, k, max_nodes) + node, lo[k]);
         atomic_max(VIT_PLANE(bounds, 3 + k, max_nodes) + node, hi[k]);
@@ -203,10 +201,11 @@ static inline void widen(volatile global int *bounds, uint max_nodes, uint node,
     }
 }
 
+#if VIT_WITH(PHOTONS)
 /* Clusters' boxes of positions (planes 0..5 of bounds: lo, hi) and of normals (6..11). The box of normals stands for the
  * normal cone: a photon that comes from behind for each corner of it comes from behind for every sample. With zones, plane 12 has
  * those that any sample accepts. Minima and maxima of integers that order as the floats do, and bits: no order of execution shows. */
-kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint run, global const uint *keys, global const sample_coordinate *position,
+kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint run, global const uint *keys, global const float *position,
                            global const uint *normal, global const uint *accept, global const uint *masks, global const uint *prefix,
                            volatile global int *bounds, volatile global uint *counters)
 {
@@ -216,7 +215,7 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
     uint accepted = 0;
     for (uint first = begin; first < end; first += VIT_LANES) {
         li key = L_AS_INT(L_LOAD(keys + first));
-        li rest = L_GE(key, (li)0);
+        li rest = L_GE(key, L_I(0));
         if (!l_any(rest))
             continue;
         lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
@@ -224,8 +223,8 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
         for (int k = 0; k < 6; k++)
             q[k] ^= (q[k] >> 31) & 0x7fffffff;
         while (l_any(rest)) {
-            uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
-            li own = rest & L_EQ(key, (li)(int)k);
+            uint k = (uint)l_reduce_max(l_sel_i(rest, key, L_I(-1)));
+            li own = rest & L_EQ(key, L_I((int)k));
             rest &= ~own;
             if (k != known) {
                 if (node < max_nodes)
@@ -238,14 +237,13 @@ kernel void cluster_bounds(global const vit_scene *scene, uint max_nodes, uint r
                     hi[i] = (int)0x80000000;
                 }
             }
-#if VIT_EFFECT_ZONES
-            accepted |= l_or(l_sel_u(own, L_LOAD(accept + first), (lu)0));
-#endif
+            if (VIT_EFFECT_ZONES)
+                accepted |= l_or(l_sel_u(own, L_LOAD(accept + first), L_U(0)));
             if (node >= max_nodes)
                 atomic_add(counters + VIT_COUNTER_dropped_samples, (uint)popcount(l_bits(own)));
             for (int i = 0; i < 6; i++) {
-                lo[i] = min(lo[i], l_reduce_min(l_sel_i(own, q[i], (li)0x7fffffff)));
-                hi[i] = max(hi[i], l_reduce_max(l_sel_i(own, q[i], (li)(int)0x80000000)));
+                lo[i] = min(lo[i], l_reduce_min(l_sel_i(own, q[i], L_I(0x7fffffff))));
+                hi[i] = max(hi[i], l_reduce_max(l_sel_i(own, q[i], L_I((int)0x80000000))));
             }
         }
     }

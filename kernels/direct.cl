@@ -1,61 +1,57 @@
 /* Pass 3: direct light with hard shadows. METHODS.md P, step 2, in radiometric units. */
-#if VIT_EFFECT_LIGHTS
 
 /* Fraction of a light's intensity that goes into direction -l (l: unit, towards the light). glTF KHR_lights_punctual. */
 static inline lf light_cone(global const vit_light *light, lv3 l)
 {
-#if VIT_EFFECT_SPOT
-    if (light->kind == VIT_LIGHT_SPOT) {
+    if (VIT_EFFECT_SPOT && light->kind == VIT_LIGHT_SPOT) {
         lf cosine = -lv3_dot(l, lv3_load(light->direction));
-        lf a = l_min(l_max(fma(cosine, (lf)light->spot_scale, (lf)light->spot_offset), (lf)0), (lf)1);
+        lf a = l_min(l_max(fma(cosine, L_F(light->spot_scale), L_F(light->spot_offset)), L_F(0)), L_F(1));
         return a * a;
     }
-#endif
-    return (lf)1;
+    return L_F(1);
 }
 
 /* Irradiance on a surface facing the light, a unit of intensity, at squared distance d2: 1/m2. */
 static inline lf light_falloff(global const vit_light *light, lf d2)
 {
-#if VIT_EFFECT_RANGE
+    if (!VIT_EFFECT_RANGE)
+        return 1.0f / d2;
     lf q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
-        return l_max(1.0f - q, (lf)0);
-    lf window = l_max(1.0f - q * q, (lf)0);
+        return l_max(1.0f - q, L_F(0));
+    lf window = l_max(1.0f - q * q, L_F(0));
     return window * window / d2;
-#else
-    return 1.0f / d2;
-#endif
 }
 
+#if VIT_WITH(LIGHTS)
 kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
-                         global const sample_coordinate *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
+                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
-    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), (li)(int)VIT_NONE);
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
     lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
-    lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
         lv3 to = lv3_sub(lv3_load(light->position), p);
-        lf d2 = l_max(lv3_dot(to, to), (lf)1e-12f), d = sqrt(d2);
+        lf d2 = l_max(lv3_dot(to, to), L_F(1e-12f)), d = sqrt(d2);
         lv3 l = lv3_scale(to, 1.0f / d);
-        lf e = l_max(lv3_dot(s, l), (lf)0) * light_cone(light, l) * light_falloff(light, d2);
-        li lit = hit & L_GT(e, (lf)0);
+        lf e = l_max(lv3_dot(s, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+        li lit = hit & L_GT(e, L_F(0));
         if (!l_any(lit))
             continue;
         ray_packet r = ray_make(p, l);
         WORK_LANES(shadow_rays, lit);
         lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
         WORK_TRACED(r);
-        sum = lv3_along(sum, lv3_load(light->intensity), l_sel(lit, e, (lf)0));
+        sum = lv3_along(sum, lv3_load(light->intensity), l_sel(lit, e, L_F(0)));
     }
-    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), (lf)VIT_INV_PI);
+    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI));
     lv3 out = lv3_load_planes(direct, n, first);
     lv3_store_planes(lv3_set(fma(a.x, sum.x, out.x), fma(a.y, sum.y, out.y), fma(a.z, sum.z, out.z)), direct, n, first);
     WORK_END

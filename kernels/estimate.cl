@@ -1,69 +1,57 @@
 /* Pass 8: irradiance from photons, a density estimate: E = sum of Phi K(d), K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons
  * that arrive from the front. METHODS.md P, step 9 and "We correct". vit_photon.power is Phi 2 / (pi r^2). */
-#if VIT_EFFECT_PHOTONS
 
 /* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the kernel's
  * disc that lies on surfaces in those zones. METHODS.md does neither; bake/README.md, "Zones and areas", says why we do. */
 #define ESTIMATE_BAKED global const uint *accept, global const float *inverse_area
 typedef struct estimate_sample {
-    lv3 p, s; /* position, unit normal */
-#if VIT_EFFECT_ZONES
-    li accept;
-#endif
-#if VIT_EFFECT_AREA
-    lf inverse_area;
-#endif
+    lv3 p, s;        /* position, unit normal */
+    li accept;       /* with zones */
+    lf inverse_area; /* with areas, else 1 */
 } estimate_sample;
 
-static inline estimate_sample estimate_load(global const vit_scene *scene, uint first, global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED)
+static inline estimate_sample estimate_load(global const vit_scene *scene, uint first, global const float *position, global const uint *normal, ESTIMATE_BAKED)
 {
     estimate_sample r;
     r.p = sample_position(scene, position, first);
     r.s = l_decode_normal(L_LOAD(normal + first));
-#if VIT_EFFECT_ZONES
-    r.accept = L_AS_INT(L_LOAD(accept + first));
-#endif
-#if VIT_EFFECT_AREA
-    r.inverse_area = L_LOAD(inverse_area + first);
-#endif
+    r.accept = L_I(-1);
+    r.inverse_area = L_F(1);
+    if (VIT_EFFECT_ZONES)
+        r.accept = L_AS_INT(L_LOAD(accept + first));
+    if (VIT_EFFECT_AREA)
+        r.inverse_area = L_LOAD(inverse_area + first);
     return r;
 }
 
 /* The samples of these numbers. */
-static inline estimate_sample estimate_load_at(global const vit_scene *scene, li at, global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED)
+static inline estimate_sample estimate_load_at(global const vit_scene *scene, li at, global const float *position, global const uint *normal, ESTIMATE_BAKED)
 {
     estimate_sample r;
     r.p = sample_position_of(scene, position, at);
     r.s = l_decode_normal(l_gather_u(normal, at));
-#if VIT_EFFECT_ZONES
-    r.accept = L_AS_INT(l_gather_u(accept, at));
-#endif
-#if VIT_EFFECT_AREA
-    r.inverse_area = L_GATHER(lf, inverse_area, at);
-#endif
+    r.accept = L_I(-1);
+    r.inverse_area = L_F(1);
+    if (VIT_EFFECT_ZONES)
+        r.accept = L_AS_INT(l_gather_u(accept, at));
+    if (VIT_EFFECT_AREA)
+        r.inverse_area = L_GATHER(lf, inverse_area, at);
     return r;
 }
 
 /* Does a photon count for a sample? Without zones, if it arrives from the front of the surface. */
 static inline li estimate_accepts(const estimate_sample *sample, global const vit_photon *photon)
 {
-#if VIT_EFFECT_ZONES
-    return L_NE(sample->accept & (int)photon->zone, (li)0);
-#else
-    return L_LT(lv3_dot(sample->s, lv3_load(photon->direction)), (lf)0);
-#endif
+    if (VIT_EFFECT_ZONES)
+        return L_NE(sample->accept & (int)photon->zone, L_I(0));
+    return L_LT(lv3_dot(sample->s, lv3_load(photon->direction)), L_F(0));
 }
 
 static inline lv3 estimate_normalise(const estimate_sample *sample, lv3 sum)
 {
-#if VIT_EFFECT_AREA
-    return lv3_scale(sum, sample->inverse_area);
-#else
-    return sum;
-#endif
+    return VIT_EFFECT_AREA ? lv3_scale(sum, sample->inverse_area) : sum;
 }
 
-#if VIT_EFFECT_LIST
 #define ESTIMATE_PARAMETERS                                                                                                      \
     global const vit_scene *scene, uint max_nodes, global const uint *masks, global const uint *prefix, global const uint *list_first, \
         global const uint *list_count, global const uint *list, global const vit_photon *photons
@@ -72,28 +60,28 @@ static inline lv3 estimate_normalise(const estimate_sample *sample, lv3 sum)
 /* Irradiance of the lanes' samples, W/m2; key: negative for none, 0 there. Lanes may have any keys. */
 static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
 {
-    li rest = L_GE(key, (li)0);
-    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    li rest = L_GE(key, L_I(0));
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     while (l_any(rest)) {
-        uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
-        li own = rest & L_EQ(key, (li)(int)k);
+        uint k = (uint)l_reduce_max(l_sel_i(rest, key, L_I(-1)));
+        li own = rest & L_EQ(key, L_I((int)k));
         rest &= ~own;
         uint cluster = cluster_of(scene, masks, prefix, k);
         if (cluster >= max_nodes)
             continue;
         global const uint *at = list + list_first[cluster], *end = at + list_count[cluster];
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+        lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
         WORK_ADD(evaluations, (ulong)popcount(l_bits(own)) * (ulong)(end - at));
         for (; at < end; at++) {
             global const vit_photon *q = photons + *at;
             lv3 o = lv3_sub(sample->p, lv3_load(q->position));
             lf d2 = lv3_dot(o, o);
-#if VIT_EFFECT_FLATTENED
-            lf off = lv3_dot(o, sample->s);
-            d2 = fma(off * off, (lf)scene->flatten, d2);
-#endif
-            lf w = l_max(fma(d2, (lf)-q->inv_radius2, (lf)1), (lf)0);
-            w = l_sel(estimate_accepts(sample, q), w, (lf)0);
+            if (VIT_EFFECT_FLATTENED) {
+                lf off = lv3_dot(o, sample->s);
+                d2 = fma(off * off, L_F(scene->flatten), d2);
+            }
+            lf w = l_max(fma(d2, L_F(-q->inv_radius2), L_F(1)), L_F(0));
+            w = l_sel(estimate_accepts(sample, q), w, L_F(0));
             sum = lv3_along(sum, lv3_load(q->power), w);
         }
         total = lv3_sel(own, estimate_normalise(sample, sum), total);
@@ -101,17 +89,17 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sa
     return total;
 }
 
-#if !VIT_EFFECT_SPARSE
-kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const sample_coordinate *position, global const uint *normal,
+#if VIT_WITH(LIST) && VIT_WITH_DENSE
+kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
                           ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
     li key = L_AS_INT(L_LOAD(keys + first));
-    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     WORK_BEGIN
-    if (l_any(L_GE(key, (li)0))) {
+    if (l_any(L_GE(key, L_I(0)))) {
         estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
         total = estimate_gather(ESTIMATE_ARGUMENTS, key, &sample WORK_PASS);
     }
@@ -119,29 +107,26 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
     WORK_END
 }
 #endif
-#endif
 
-#if VIT_EFFECT_BUCKETS
 #define BUCKET_PARAMETERS                                                                                                        \
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
         global const uint *prefix, global const int *bounds, global const float *buckets
 #define BUCKET_ARGUMENTS scene, cameras, frame, max_nodes, masks, prefix, bounds, buckets
 
-#if VIT_EFFECT_RAW_BUCKETS
-/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. As estimate_gather; x, y: pixels. */
-static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
+/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. As estimate_gather. */
+static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
 {
-    lv3 p = sample->p, s = sample->s;
-    li rest = L_GE(key, (li)0);
-    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 s = sample->s;
+    li rest = L_GE(key, L_I(0));
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     while (l_any(rest)) {
-        uint k = (uint)l_reduce_max(l_sel_i(rest, key, (li)-1));
-        li own = rest & L_EQ(key, (li)(int)k);
+        uint k = (uint)l_reduce_max(l_sel_i(rest, key, L_I(-1)));
+        li own = rest & L_EQ(key, L_I((int)k));
         rest &= ~own;
         uint cluster = cluster_of(scene, masks, prefix, k);
         if (cluster >= max_nodes)
             continue;
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
+        lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
         for (uint b = 0; b < BUCKETS; b++) {
             global const float *power = buckets + ((size_t)cluster * BUCKETS + b) * 4;
             if (!(power[3] > 0))
@@ -151,40 +136,40 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample
             float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
             float dx = face < 2 ? sign : u, dy = face < 2 ? u : face < 4 ? sign : v, dz = face < 4 ? v : sign;
             float unit = 1.0f / sqrt(fma(dz, dz, fma(dy, dy, dx * dx)));
-            lf w = 2.0f * l_max(lv3_dot(s, lv3_set((lf)(dx * unit), (lf)(dy * unit), (lf)(dz * unit))), (lf)0);
+            lf w = 2.0f * l_max(lv3_dot(s, lv3_set(L_F(dx * unit), L_F(dy * unit), L_F(dz * unit))), L_F(0));
             sum = lv3_along(sum, lv3_load(power), w);
         }
         total = lv3_sel(own, estimate_normalise(sample, sum), total);
     }
     return total;
 }
-#else
+
 /* Irradiance of a cluster on a surface of normal s, x, y, z in scalar planes. An octant counts as far as it lies in front:
  * clamp(1 + s o), o = (+-1, +-1, +-1). Exact for axis-parallel surfaces, continuous for all; a surface that is lit evenly and
  * tilted keeps at least 95 % of its light (blending axes by their squares, as ambient cubes do, would lose up to 21 %). */
 static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
 {
-    lv3 r = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 r = lv3_set(L_F(0), L_F(0), L_F(0));
     for (uint o = 0; o < 8; o++) {
         lf front = ((o & 1) ? -s.x : s.x) + ((o & 2) ? -s.y : s.y) + ((o & 4) ? -s.z : s.z);
-        r = lv3_along(r, lv3_load(octants + o * 4), l_min(l_max(1.0f + front, (lf)0), (lf)1));
+        r = lv3_along(r, lv3_load(octants + o * 4), l_min(l_max(1.0f + front, L_F(0)), L_F(1)));
     }
     return r;
 }
 
 /* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by how
  * near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y: pixels. */
-static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
+static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
 {
     lv3 p = sample->p, s = sample->s;
-    li rest = L_GE(key, (li)0);
-    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    li rest = L_GE(key, L_I(0));
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     global const vit_camera *camera = cameras + frame;
-    lf edge = (lf)(1.0f / (float)scene->tile);
-    lf fx = fma(L_FROM_INT(x) + 0.5f, edge, (lf)-0.5f), fy = fma(L_FROM_INT(y) + 0.5f, edge, (lf)-0.5f);
-    lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), (lf)scene->slice_near);
+    lf edge = L_F(1.0f / (float)scene->tile);
+    lf fx = fma(L_FROM_INT(x) + 0.5f, edge, L_F(-0.5f)), fy = fma(L_FROM_INT(y) + 0.5f, edge, L_F(-0.5f));
+    lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), L_F(scene->slice_near));
     lf fz = l_log2(depth / scene->slice_near) * scene->slice_scale - (float)scene->slice_first - 0.5f;
-    fz = l_min(l_max(fz, (lf)-0.5f), (lf)((float)scene->slice_count - 0.5f));
+    fz = l_min(l_max(fz, L_F(-0.5f)), L_F((float)scene->slice_count - 0.5f));
     lf ix = floor(fx), iy = floor(fy), iz = floor(fz);
     fx -= ix;
     fy -= iy;
@@ -195,20 +180,20 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample
     lf cell = depth * (sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
     while (l_any(rest)) {
         /* Lanes between the same tile centres and slices, and with the same direction bits in their keys. */
-        int z = l_reduce_max(l_sel_i(rest, z0, (li)-1000000));
-        li own = rest & L_EQ(z0, (li)z);
-        int tx = l_reduce_max(l_sel_i(own, x0, (li)-1000000));
-        own &= L_EQ(x0, (li)tx);
-        int ty = l_reduce_max(l_sel_i(own, y0, (li)-1000000));
-        own &= L_EQ(y0, (li)ty);
+        int z = l_reduce_max(l_sel_i(rest, z0, L_I(-1000000)));
+        li own = rest & L_EQ(z0, L_I(z));
+        int tx = l_reduce_max(l_sel_i(own, x0, L_I(-1000000)));
+        own &= L_EQ(x0, L_I(tx));
+        int ty = l_reduce_max(l_sel_i(own, y0, L_I(-1000000)));
+        own &= L_EQ(y0, L_I(ty));
         uint direction = 0;
-#if VIT_EFFECT_NORMAL_KEYS
-        direction = (uint)l_reduce_max(l_sel_i(own, key & 63, (li)0));
-        own &= L_EQ(key & 63, (li)(int)direction);
-#endif
+        if (VIT_EFFECT_NORMAL_KEYS) {
+            direction = (uint)l_reduce_max(l_sel_i(own, key & 63, L_I(0)));
+            own &= L_EQ(key & 63, L_I((int)direction));
+        }
         rest &= ~own;
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0);
-        lf weights = (lf)0;
+        lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
+        lf weights = L_F(0);
         for (int corner = 0; corner < 8; corner++) {
             int cx = tx + (corner & 1), cy = ty + ((corner >> 1) & 1), cz = z + (corner >> 2);
             if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y || cz >= (int)scene->slice_count)
@@ -220,38 +205,42 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample
                 continue;
             WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
             splat_box box = splat_node(bounds, max_nodes, cluster);
-            lv3 c = lv3_set((lf)(0.5f * (box.lo[0] + box.hi[0])), (lf)(0.5f * (box.lo[1] + box.hi[1])), (lf)(0.5f * (box.lo[2] + box.hi[2])));
+            lv3 c = lv3_set(L_F(0.5f * (box.lo[0] + box.hi[0])), L_F(0.5f * (box.lo[1] + box.hi[1])), L_F(0.5f * (box.lo[2] + box.hi[2])));
             lf off = lv3_dot(lv3_sub(c, p), s) / cell;
-            lf w = l_max(1.0f - off * off, (lf)0.01f);
+            lf w = l_max(1.0f - off * off, L_F(0.01f));
             w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
             sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
             weights += w;
         }
-        lf scale = l_sel(L_GT(weights, (lf)0), 1.0f / l_max(weights, (lf)1e-20f), (lf)0);
+        lf scale = l_sel(L_GT(weights, L_F(0)), 1.0f / l_max(weights, L_F(1e-20f)), L_F(0));
         total = lv3_sel(own, estimate_normalise(sample, lv3_scale(sum, scale)), total);
     }
     return total;
 }
-#endif
 
-#if !VIT_EFFECT_SPARSE
-kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const sample_coordinate *position, global const uint *normal,
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
+{
+    if (VIT_EFFECT_RAW_BUCKETS)
+        return bucket_gather_raw(BUCKET_ARGUMENTS, key, sample WORK_PASS);
+    return bucket_gather_smooth(BUCKET_ARGUMENTS, key, sample, x, y WORK_PASS);
+}
+
+#if VIT_WITH(BUCKETS) && VIT_WITH_DENSE
+kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
                              ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
     li key = L_AS_INT(L_LOAD(keys + first)), x, y;
-    lv3 total = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     l_pixel(scene, first, &x, &y);
     WORK_BEGIN
-    if (l_any(L_GE(key, (li)0))) {
+    if (l_any(L_GE(key, L_I(0)))) {
         estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
         total = bucket_gather(BUCKET_ARGUMENTS, key, &sample, x, y WORK_PASS);
     }
     lv3_store_planes(total, indirect, n, first);
     WORK_END
 }
-#endif
-#endif
 #endif

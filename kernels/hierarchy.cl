@@ -1,5 +1,4 @@
 /* Pass 6: boxes of the inner nodes, level by level from the clusters up. METHODS.md P, step 7. */
-#if VIT_EFFECT_PHOTONS
 
 /* Nodes of a level are numbered in a row: first of level + 1 is where the children of level's first mask word begin. */
 static inline uint level_begin(global const vit_scene *scene, global const uint *prefix, uint level)
@@ -13,6 +12,7 @@ static inline uint level_end(global const vit_scene *scene, global const uint *p
     return min(end, max_nodes);
 }
 
+#if VIT_WITH(PHOTONS)
 kernel void node_bounds(global const vit_scene *scene, uint max_nodes, uint level, global const uint *prefix, global const uint *node_first,
                         global const uint *node_count, global int *bounds, global const uint *counters)
 {
@@ -27,12 +27,12 @@ kernel void node_bounds(global const vit_scene *scene, uint max_nodes, uint leve
             v = least ? min(v, plane[first + i]) : max(v, plane[first + i]);
         plane[node] = v;
     }
-#if VIT_EFFECT_ZONES
+    if (!VIT_EFFECT_ZONES)
+        return;
     global int *zones = VIT_PLANE(bounds, 12, max_nodes);
     int accepted = 0;
     for (uint i = 0; i < count; i++)
         accepted |= zones[first + i];
     zones[node] = accepted;
-#endif
 }
 #endif

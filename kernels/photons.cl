@@ -1,6 +1,5 @@
 /* Pass 4: photon paths of moving lights. METHODS.md P, step 3. A photon is stored at every hit but the first, which is direct light.
  * Slot of path p's k-th stored photon: k * paths + p, so that no order of execution shows. */
-#if VIT_EFFECT_TRACED
 
 /* Footprint of a photon for the choice of mip level: wide, since its light spreads over its radius anyway. */
 #define PHOTON_CONE 0.02f
@@ -13,47 +12,45 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lf *we
     lu i = path - light->path_first; /* < 2^20, so that i * 2^32 / count can be had in two exact steps */
     lu high = (i << 12) / count, rest = (i << 12) - high * count;
     lu r = l_pcg(path * 2u + 0x9e3779b9u);
-    lu curve = (high << 20) + (((rest << 10) / count) << 10) + mul_hi(r, (lu)(0xffffffffu / count));
+    lu curve = (high << 20) + (((rest << 10) / count) << 10) + mul_hi(r, L_U(0xffffffffu / count));
     lf u = (L_FROM_INT(L_AS_INT(l_even_bits(curve))) + l_unit_float(l_pcg(r))) * (1.0f / 65536.0f);
     lf v = (L_FROM_INT(L_AS_INT(l_even_bits(curve >> 1))) + l_unit_float(l_pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
     /* Uniform over the cone cos >= cos_outer, about the axis. */
-    lf c = fma(u, (lf)(light->cos_outer - 1.0f), (lf)1), s = sqrt(l_max(1.0f - c * c, (lf)0)), sp, cp;
+    lf c = fma(u, L_F(light->cos_outer - 1.0f), L_F(1)), s = sqrt(l_max(1.0f - c * c, L_F(0))), sp, cp;
     l_sincos_turn(v, &sp, &cp);
-    lv3 axis = light->kind == VIT_LIGHT_SPOT ? lv3_load(light->direction) : lv3_set((lf)0, (lf)1, (lf)0);
+    lv3 axis = light->kind == VIT_LIGHT_SPOT ? lv3_load(light->direction) : lv3_set(L_F(0), L_F(1), L_F(0));
     ray_packet frame = ray_make(axis, axis);
     lv3 d = lv3_unit(lv3_along(lv3_along(lv3_scale(axis, c), frame.ax, s * cp), frame.ay, s * sp));
-    *weight = light_cone(light, lv3_scale(d, (lf)-1));
+    *weight = light_cone(light, lv3_scale(d, L_F(-1)));
     return d;
 }
 
 /* Cosine-distributed direction about n from two random numbers. */
 static inline lv3 photon_bounce(lv3 n, lf a, lf b)
 {
-    lf s = sqrt(a), c = sqrt(l_max(1.0f - a, (lf)0)), sp, cp;
+    lf s = sqrt(a), c = sqrt(l_max(1.0f - a, L_F(0))), sp, cp;
     l_sincos_turn(b, &sp, &cp);
     ray_packet frame = ray_make(n, n);
     return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
 }
 
-#if VIT_EFFECT_SEQUENCE
 constant uint photon_alpha[6] = VIT_BOUNCE_ALPHA;
-#endif
 
 /* Two numbers in [0, 1) for the reflection at a hit. */
 static inline void photon_numbers(lu path, uint hit_number, lf *u, lf *v)
 {
-#if VIT_EFFECT_SEQUENCE
+    if (!VIT_EFFECT_SEQUENCE) {
+        lu seed = l_pcg(path ^ l_pcg(L_U(hit_number * 2u + 1u)));
+        *u = l_unit_float(seed);
+        *v = l_unit_float(l_pcg(seed));
+        return;
+    }
     /* The R sequence (Roberts 2018) in the six dimensions of three reflections together, in integers modulo 2^32; later hits start
      * anew with other shifts. Paths are numbered along the Z-order curve of their emission, so any stretch of the sequence, which is
      * as evenly spread as the whole, belongs to neighbouring directions. */
     uint k = (hit_number % 3u) * 2u, shift = hit_number * 2u;
-    *u = l_unit_float(path * photon_alpha[k] + l_pcg((lu)(shift + 1u)));
-    *v = l_unit_float(path * photon_alpha[k + 1u] + l_pcg((lu)(shift + 2u)));
-#else
-    lu seed = l_pcg(path ^ l_pcg((lu)(hit_number * 2u + 1u)));
-    *u = l_unit_float(seed);
-    *v = l_unit_float(l_pcg(seed));
-#endif
+    *u = l_unit_float(path * photon_alpha[k] + l_pcg(L_U(shift + 1u)));
+    *v = l_unit_float(path * photon_alpha[k + 1u] + l_pcg(L_U(shift + 2u)));
 }
 
 /* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
@@ -62,7 +59,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
     float v[12 * VIT_LANES];
     uint zones[VIT_LANES];
     float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * VIT_INV_PI * inv;
-    lv3 zero = lv3_set((lf)0, (lf)0, (lf)0);
+    lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     p = lv3_sel(valid, p, zero);
     d = lv3_sel(valid, d, zero);
     power = lv3_sel(valid, power, zero);
@@ -75,8 +72,8 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
     L_STORE(power.x * scale, v + 6 * VIT_LANES);
     L_STORE(power.y * scale, v + 7 * VIT_LANES);
     L_STORE(power.z * scale, v + 8 * VIT_LANES);
-    L_STORE(l_sel(valid, (lf)r2, (lf)-1), v + 9 * VIT_LANES);
-    L_STORE(l_sel_u(valid, zone, (lu)0), zones);
+    L_STORE(l_sel(valid, L_F(r2), L_F(-1)), v + 9 * VIT_LANES);
+    L_STORE(l_sel_u(valid, zone, L_U(0)), zones);
     for (int i = 0; i < VIT_LANES; i++) {
         global vit_photon *q = photons + slot + i;
         q->position[0] = v[i];
@@ -94,6 +91,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
     }
 }
 
+#if VIT_WITH(TRACED)
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
 kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides, global const uint *cells,
                          global vit_photon *photons, volatile global uint *counters WORK_PARAMETERS)
@@ -105,22 +103,22 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     for (uint i = 0; i < scene->lights; i++, light++)
         if (light->path_count > 0 && first >= light->path_first && first < light->path_first + light->path_count)
             break;
-    lu path = (lu)first + L_AS_UINT(L_INDEX);
-    li alive = (li)0;
-    lv3 o = lv3_set((lf)0, (lf)0, (lf)0), d = o, power = o;
+    lu path = L_U(first) + L_AS_UINT(L_INDEX);
+    li alive = L_I(0);
+    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o;
     if (light < lights + (size_t)(frame + 1) * scene->lights) {
         lf weight;
         o = lv3_load(light->position);
         d = photon_emission(light, path, &weight);
         lf share = weight * (2.0f * VIT_PI * (1.0f - light->cos_outer) / (float)light->path_count);
         power = lv3_scale(lv3_load(light->intensity), share);
-        alive = L_LT(path, (lu)(light->path_first + light->path_count)) & L_GT(share, (lf)0);
+        alive = L_LT(path, L_U(light->path_first + light->path_count)) & L_GT(share, L_F(0));
     }
     uint stored = 0;
     WORK_BEGIN
     for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
-        lf t = (lf)3e38f;
-        li triangle = (li)0;
+        lf t = L_F(3e38f);
+        li triangle = L_I(0);
         surface s;
         s.position = o;
         if (l_any(alive)) {
@@ -128,31 +126,27 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             WORK_LANES(photon_rays, alive);
             ray_nearest(RAY_SCENE, &r, alive, &t, &triangle);
             WORK_TRACED(r);
-            alive &= L_NE(triangle, (li)(int)VIT_NONE);
-            t = l_sel(alive, t, (lf)1);
-            s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, (lf)PHOTON_CONE);
+            alive &= L_NE(triangle, L_I((int)VIT_NONE));
+            t = l_sel(alive, t, L_F(1));
+            s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, L_F(PHOTON_CONE));
             WORK_LANES(surface_points, alive);
             WORK_LANES(texture_fetches, s.textured);
         }
         if (hit_number > 0) {
-            lu zone = (lu)0;
-#if VIT_EFFECT_ZONES
-            if (l_any(alive)) {
+            lu zone = L_U(0);
+            if (VIT_EFFECT_ZONES && l_any(alive)) {
                 cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
                 zone = cell_zone(cells, &cell);
             }
-#endif
             photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius, zone);
             stored += popcount(l_bits(alive));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
             continue; /* slots of dead paths are still written, as empty */
-#if VIT_EFFECT_RANGE
-        if (hit_number == 0) /* the same light that direct lighting sees */
+        if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
             power = lv3_scale(power, light_falloff(light, t * t) * (t * t));
-#endif
         power = lv3_set(power.x * s.albedo.x, power.y * s.albedo.y, power.z * s.albedo.z);
-        alive &= L_GT(power.x + power.y + power.z, (lf)0);
+        alive &= L_GT(power.x + power.y + power.z, L_F(0));
         lf u, v;
         photon_numbers(path, hit_number, &u, &v);
         d = photon_bounce(s.face, u, v);

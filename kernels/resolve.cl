@@ -1,18 +1,32 @@
 /* Pass 11: light to pixels. METHODS.md P, step 10: radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
- * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format. */
+ * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine.h). */
+
+enum { FORMAT_XRGB8888, FORMAT_RGB565, FORMAT_RGBA32F };
+/* 1 << VIT_VIEW. */
+enum {
+    VIEW_FINAL = 1,
+    VIEW_DIRECT = 2,
+    VIEW_INDIRECT = 4,
+    VIEW_CLUSTERS = 8,
+    VIEW_PHOTONS = 16,
+    VIEW_HEAT = 32,
+    VIEW_NORMALS = 64,
+    VIEW_DEPTH = 128,
+    VIEW_ALBEDO = 256
+};
 
 /* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */
 static inline lf srgb_curve(lf x)
 {
-    lf c = l_min(l_max(x, (lf)0), (lf)1);
+    lf c = l_min(l_max(x, L_F(0)), L_F(1));
     lf low = c * 12.92f;
-    lf high = fma(l_exp2(l_log2(l_max(c, (lf)1e-4f)) * (1.0f / 2.4f)), (lf)1.055f, (lf)-0.055f);
-    return l_sel(L_LE(c, (lf)0.0031308f), low, high);
+    lf high = fma(l_exp2(l_log2(l_max(c, L_F(1e-4f))) * (1.0f / 2.4f)), L_F(1.055f), L_F(-0.055f));
+    return l_sel(L_LE(c, L_F(0.0031308f)), low, high);
 }
 
 static inline li to_steps(lf x, float steps)
 {
-    return L_TRUNC(fma(x, (lf)steps, (lf)0.5f));
+    return L_TRUNC(fma(x, L_F(steps), L_F(0.5f)));
 }
 
 /* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
@@ -22,73 +36,54 @@ static inline void write_pixels(global const vit_scene *scene, li x, li y, li in
     L_STORE(x, px);
     L_STORE(y, py);
     L_STORE(inside, in);
-#if VIT_FORMAT == 2
-    float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
-    L_STORE(c.x, r);
-    L_STORE(c.y, g);
-    L_STORE(c.z, b);
-    for (int i = 0; i < VIT_LANES; i++)
-        if (in[i])
-            vstore4((float4)(r[i], g[i], b[i], 1.0f), (size_t)py[i] * scene->width + (size_t)px[i], (global float *)framebuffer);
-#else
+    if (VIT_FORMAT == FORMAT_RGBA32F) {
+        float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
+        L_STORE(c.x, r);
+        L_STORE(c.y, g);
+        L_STORE(c.z, b);
+        for (int i = 0; i < VIT_LANES; i++)
+            if (in[i])
+                vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)py[i] * scene->width + (size_t)px[i], (global float *)framebuffer);
+        return;
+    }
     int v[VIT_LANES];
-#if VIT_FORMAT == 1
-    L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
-    global ushort *out = (global ushort *)framebuffer;
-#else
+    if (VIT_FORMAT == FORMAT_RGB565) {
+        L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
+        for (int i = 0; i < VIT_LANES; i++)
+            if (in[i])
+                ((global ushort *)framebuffer)[(size_t)py[i] * scene->width + (size_t)px[i]] = (ushort)v[i];
+        return;
+    }
     L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
-    global uint *out = (global uint *)framebuffer;
-#endif
     for (int i = 0; i < VIT_LANES; i++)
         if (in[i])
-            out[(size_t)py[i] * scene->width + (size_t)px[i]] = v[i];
-#endif
+            ((global uint *)framebuffer)[(size_t)py[i] * scene->width + (size_t)px[i]] = (uint)v[i];
 }
 
 /* Black, blue, green, yellow, red, white over 0..1. */
 static inline lv3 heat_colour(lf h)
 {
-    lf x = l_min(l_max(h, (lf)0), (lf)1) * 5.0f;
-    lf zero = (lf)0, one = (lf)1;
+    lf x = l_min(l_max(h, L_F(0)), L_F(1)) * 5.0f;
+    lf zero = L_F(0), one = L_F(1);
     lf r = l_min(l_max(x - 2.0f, zero), one);
     lf g = l_min(l_max(x - 1.0f, zero), one) - l_min(l_max(x - 3.0f, zero), one) + l_max(x - 4.0f, zero);
     lf b = l_min(x, one) - l_min(l_max(x - 1.0f, zero), one) + l_max(x - 4.0f, zero);
     return lv3_set(r, g, b);
 }
 
-kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
-                    global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
-                    uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
-                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global uchar *framebuffer)
+/* A colour a cluster, shaded by the normal. */
+static inline lv3 cluster_colour(lu key, lu normal)
 {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
-        return;
-    li x, y;
-    l_pixel(scene, first, &x, &y);
-    li inside = l_inside(scene, x, y);
-    if (!l_any(inside))
-        return;
-    float exposure = cameras[frame].exposure;
-    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), (li)(int)VIT_NONE);
-    lv3 zero = lv3_set((lf)0, (lf)0, (lf)0), c = zero;
-    int display = 0; /* is c a display value already? */
-#if VIT_VIEW == 0 || VIT_VIEW == 1 || VIT_VIEW == 4
-    c = lv3_load_planes(direct, n, first);
-#endif
-#if VIT_EFFECT_PHOTONS && (VIT_VIEW == 0 || VIT_VIEW == 2 || VIT_VIEW == 4)
-    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), (lf)VIT_INV_PI), e = lv3_load_planes(indirect, n, first);
-    c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
-#endif
-#if VIT_EFFECT_PHOTONS && (VIT_VIEW == 3 || VIT_VIEW == 5)
-    lu key = L_LOAD(keys + first);
-    li has = L_NE(L_AS_INT(key), (li)(int)VIT_NONE);
-#if VIT_VIEW == 3
     lu h = l_pcg(key);
-    lf shade = L_FROM_INT(L_AS_INT(L_LOAD(normal + first) >> 8) & 0xff) * (0.3f / 255.0f) + 0.6f;
-    c = lv3_scale(lv3_set(L_FROM_INT(L_AS_INT(h & 255u)), L_FROM_INT(L_AS_INT((h >> 8) & 255u)), L_FROM_INT(L_AS_INT((h >> 16) & 255u))),
-                  shade * (1.0f / 255.0f));
-#else
+    lf shade = L_FROM_INT(L_AS_INT(normal >> 8) & 0xff) * (0.3f / 255.0f) + 0.6f;
+    return lv3_scale(lv3_set(L_FROM_INT(L_AS_INT(h & 255u)), L_FROM_INT(L_AS_INT((h >> 8) & 255u)), L_FROM_INT(L_AS_INT((h >> 16) & 255u))),
+                     shade * (1.0f / 255.0f));
+}
+
+/* Photons of the lanes' clusters; white from 4095 on. */
+static inline lv3 cluster_heat(global const vit_scene *scene, lu key, uint max_nodes, global const uint *masks, global const uint *prefix,
+                               global const uint *list_count)
+{
     uint k[VIT_LANES];
     float count[VIT_LANES];
     L_STORE(key, k);
@@ -96,33 +91,12 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         uint cluster = k[i] == VIT_NONE ? VIT_NONE : cluster_of(scene, masks, prefix, k[i]);
         count[i] = cluster < max_nodes ? (float)list_count[cluster] : 0.0f;
     }
-    c = heat_colour(l_log2(L_LOAD(count) + 1.0f) * (1.0f / 12.0f)); /* white from 4095 photons on */
-#endif
-    c = lv3_sel(has, c, zero);
-    display = 1;
-#endif
-#if VIT_VIEW == 6
-    lv3 s = l_decode_normal(L_LOAD(normal + first));
-    c = lv3_sel(hit, lv3_set(fma(s.x, (lf)0.5f, (lf)0.5f), fma(s.y, (lf)0.5f, (lf)0.5f), fma(s.z, (lf)0.5f, (lf)0.5f)), zero);
-    display = 1;
-#endif
-#if VIT_VIEW == 7
-    lf near = (lf)(8.0f * scene->slice_near), shown = near / (near + L_LOAD(hit_distance + first)) ;
-    c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
-    display = 1;
-#endif
-#if VIT_VIEW == 8
-    c = l_decode_albedo(L_LOAD(albedo + first));
-    c = lv3_sel(hit, c, zero);
-    exposure = 1.0f;
-#endif
-    if (!display)
-        c = lv3_scale(c, (lf)exposure);
-#if VIT_FORMAT != 2
-    if (!display)
-        c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));
-#endif
-#if VIT_EFFECT_DOTS
+    return heat_colour(l_log2(L_LOAD(count) + 1.0f) * (1.0f / 12.0f));
+}
+
+/* The photons' colours over c, where there is a dot. */
+static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside, lv3 c, global const uint *dots, global const vit_photon *photons)
+{
     int px[VIT_LANES], py[VIT_LANES], in[VIT_LANES];
     float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
     L_STORE(x, px);
@@ -141,12 +115,63 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
             b[i] = p->power[2] / top;
         }
     }
-    c = lv3_set(L_LOAD(r), L_LOAD(g), L_LOAD(b));
-#endif
+    return lv3_set(L_LOAD(r), L_LOAD(g), L_LOAD(b));
+}
+
+kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
+                    global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
+                    uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
+                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global uchar *framebuffer)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n)
+        return;
+    li x, y;
+    l_pixel(scene, first, &x, &y);
+    li inside = l_inside(scene, x, y);
+    if (!l_any(inside))
+        return;
+    float exposure = cameras[frame].exposure;
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+    lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0)), c = zero;
+    int view = 1 << VIT_VIEW, display = 0; /* is c a display value already? */
+    if (view & (VIEW_FINAL | VIEW_DIRECT | VIEW_PHOTONS))
+        c = lv3_load_planes(direct, n, first);
+    if (VIT_EFFECT_PHOTONS && (view & (VIEW_FINAL | VIEW_INDIRECT | VIEW_PHOTONS))) {
+        lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), e = lv3_load_planes(indirect, n, first);
+        c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
+    }
+    if (VIT_EFFECT_PHOTONS && (view & (VIEW_CLUSTERS | VIEW_HEAT))) {
+        lu key = L_LOAD(keys + first);
+        c = view == VIEW_HEAT ? cluster_heat(scene, key, max_nodes, masks, prefix, list_count)
+                              : cluster_colour(key, L_LOAD(normal + first));
+        c = lv3_sel(L_NE(L_AS_INT(key), L_I((int)VIT_NONE)), c, zero);
+        display = 1;
+    }
+    if (view == VIEW_NORMALS) {
+        lv3 s = l_decode_normal(L_LOAD(normal + first));
+        c = lv3_sel(hit, lv3_set(fma(s.x, L_F(0.5f), L_F(0.5f)), fma(s.y, L_F(0.5f), L_F(0.5f)), fma(s.z, L_F(0.5f), L_F(0.5f))), zero);
+        display = 1;
+    }
+    if (view == VIEW_DEPTH) {
+        lf near = L_F(8.0f * scene->slice_near), shown = near / (near + L_LOAD(hit_distance + first));
+        c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
+        display = 1;
+    }
+    if (view == VIEW_ALBEDO) {
+        c = lv3_sel(hit, l_decode_albedo(L_LOAD(albedo + first)), zero);
+        exposure = 1.0f;
+    }
+    if (!display)
+        c = lv3_scale(c, L_F(exposure));
+    if (VIT_FORMAT != FORMAT_RGBA32F && !display)
+        c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));
+    if (VIT_EFFECT_DOTS)
+        c = over_dots(scene, x, y, inside, c, dots, photons);
     write_pixels(scene, x, y, inside, c, framebuffer);
 }
 
-#if VIT_EFFECT_DOTS
+#if VIT_WITH(DOTS)
 kernel void dots_clear(global const vit_scene *scene, global uint *dots)
 {
     uint i = (uint)get_global_id(0);
@@ -185,7 +210,7 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
 }
 #endif
 
-#if VIT_EFFECT_PHOTONS
+#if VIT_WITH(PHOTONS)
 /* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest). */
 kernel void account(global uint *counters)
 {

@@ -2,15 +2,11 @@
  * samples get it from the four coarse ones around them, weighted bilinearly and by whether they lie on the same surface (and with
  * zones, take the same photons): Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees
  * with is estimated after all. Albedo is applied later, so that textures stay sharp. */
-#if VIT_EFFECT_SPARSE
 
-#if VIT_EFFECT_SPARSE_16
-#define SPARSE_STEP 4 /* pixels between coarse samples */
-#else
-#define SPARSE_STEP 2
-#endif
-#define SPARSE_ROW (4 / SPARSE_STEP) /* coarse samples a row of a block of 4 x 4 pixels */
+#define SPARSE_ROW_BITS (VIT_EFFECT_SPARSE_16 ? 0 : 1)
+#define SPARSE_ROW (1 << SPARSE_ROW_BITS) /* coarse samples a row of a block of 4 x 4 pixels */
 #define SPARSE_BLOCK (SPARSE_ROW * SPARSE_ROW)
+#define SPARSE_STEP (4 >> SPARSE_ROW_BITS) /* pixels between coarse samples */
 #define SPARSE_LEAST 0.1f /* sum of weights below which a sample has no neighbours; 1: four of the same plane and normal */
 
 /* A coarse sample: its sum before estimate_normalise, which each sample does for itself; position; unit normal: 3 floats each. A
@@ -19,14 +15,14 @@
 
 static inline uint sparse_count(global const vit_scene *scene)
 {
-    return scene->samples / (16u / SPARSE_BLOCK);
+    return scene->samples >> 4 << 2 * SPARSE_ROW_BITS;
 }
 
 /* View sample of coarse sample i. */
 static inline li sparse_sample(li i)
 {
     li at = i & (SPARSE_BLOCK - 1);
-    return (i / SPARSE_BLOCK) * 16 + (at / SPARSE_ROW) * (SPARSE_STEP * 4) + (at % SPARSE_ROW) * SPARSE_STEP;
+    return (i >> (2 * SPARSE_ROW_BITS)) * 16 + (at >> SPARSE_ROW_BITS) * (SPARSE_STEP * 4) + (at & (SPARSE_ROW - 1)) * SPARSE_STEP;
 }
 
 /* List or buckets, whichever there are; `slots` are coarse samples where `flags` is NULL, else the view samples flagged there. */
@@ -34,7 +30,7 @@ static inline li sparse_sample(li i)
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
         global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,        \
         global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,        \
-        global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED
+        global const float *position, global const uint *normal, ESTIMATE_BAKED
 #define SPARSE_ARGUMENTS                                                                                                         \
     scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal, accept, inverse_area
 
@@ -45,17 +41,17 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
     estimate_sample found = estimate_load_at(scene, sample, position, normal, accept, inverse_area);
     lv3 p = found.p, s = found.s;
-#if VIT_EFFECT_AREA
-    found.inverse_area = flags ? found.inverse_area : (lf)1;
-#endif
-    li keyed = l_sel_i(L_LT(L_INDEX, (li)(int)used), (li)key, (li)-1);
-#if VIT_EFFECT_LIST
-    lv3 e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
-#else
-    li x, y;
-    l_pixel_of(scene, sample, &x, &y);
-    lv3 e = bucket_gather(BUCKET_ARGUMENTS, keyed, &found, x, y WORK_PASS);
-#endif
+    if (!flags)
+        found.inverse_area = L_F(1);
+    li keyed = l_sel_i(L_LT(L_INDEX, L_I((int)used)), L_I(key), L_I(-1));
+    lv3 e;
+    if (VIT_EFFECT_LIST)
+        e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
+    else {
+        li x, y;
+        l_pixel_of(scene, sample, &x, &y);
+        e = bucket_gather(BUCKET_ARGUMENTS, keyed, &found, x, y WORK_PASS);
+    }
     float value[SPARSE_FLOATS][VIT_LANES];
     L_STORE(e.x, value[0]);
     L_STORE(e.y, value[1]);
@@ -80,11 +76,11 @@ static inline li sparse_keys(global const uint *keys, global const uint *flags, 
 {
     li slot = (int)first + L_INDEX;
     if (flags) { /* end is a multiple of 16 */
-        li flagged = ((li)(int)(flags[first / 16] >> (first & 15)) >> L_INDEX) & 1;
-        return l_any(flagged) ? L_AS_INT(L_LOAD(keys + first)) | (flagged - 1) : (li)-1;
+        li flagged = (L_I((int)(flags[first / 16] >> (first & 15))) >> L_INDEX) & 1;
+        return l_any(flagged) ? L_AS_INT(L_LOAD(keys + first)) | (flagged - 1) : L_I(-1);
     }
-    li key = L_AS_INT(l_gather_u(keys, sparse_sample(min(slot, (li)(int)(end - 1)))));
-    return l_sel_i(L_LT(slot, (li)(int)end), key, (li)-1);
+    li key = L_AS_INT(l_gather_u(keys, sparse_sample(min(slot, L_I((int)(end - 1))))));
+    return l_sel_i(L_LT(slot, L_I((int)end)), key, L_I(-1));
 }
 
 /* All slots of a tile, those of one cluster together: lanes that share a list take it in one go. Which lanes go together changes
@@ -95,11 +91,11 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
     for (int key = 0x7fffffff, next; key >= 0; key = next) { /* descending; the first round only looks for the greatest */
         int mine[2 * VIT_LANES];
         uint found = 0;
-        li below = (li)-1;
+        li below = L_I(-1);
         for (uint first = begin; first < end; first += VIT_LANES) {
             li k = sparse_keys(keys, flags, first, end);
-            below = max(below, l_sel_i(L_LT(k, (li)key), k, (li)-1));
-            for (uint hits = l_bits(L_EQ(k, (li)key)); hits != 0; hits &= hits - 1)
+            below = max(below, l_sel_i(L_LT(k, L_I(key)), k, L_I(-1)));
+            for (uint hits = l_bits(L_EQ(k, L_I(key))); hits != 0; hits &= hits - 1)
                 mine[found++] = (int)(first + 31u - (uint)clz(hits & (~hits + 1u)));
             if (found < VIT_LANES)
                 continue;
@@ -117,6 +113,7 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
     }
 }
 
+#if VIT_WITH(SPARSE)
 /* The coarse samples: a work-item's are those of a tile, or with one lane, where nothing need go together, a single one. */
 kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMETERS)
 {
@@ -142,14 +139,16 @@ kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global fl
     WORK_END
 }
 
+#endif
+
 /* How far a coarse sample lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from their tangent
  * plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step metres there. */
 static inline lf sparse_agreement(global const float *c, lv3 p, lv3 s, lf per_step)
 {
-    lf off = lv3_dot(lv3_sub(p, lv3_load(c + 3)), s) * per_step, cosine = l_max(lv3_dot(s, lv3_load(c + 6)), (lf)0);
+    lf off = lv3_dot(lv3_sub(p, lv3_load(c + 3)), s) * per_step, cosine = l_max(lv3_dot(s, lv3_load(c + 6)), L_F(0));
     cosine *= cosine;
     cosine *= cosine;
-    return l_max(fma(-off, off, (lf)1), (lf)0) * (cosine * cosine);
+    return l_max(fma(-off, off, L_F(1)), L_F(0)) * (cosine * cosine);
 }
 
 /* Number of the block x, y of the picture, or VIT_NONE beyond it. */
@@ -161,10 +160,11 @@ static inline uint sparse_block(global const vit_scene *scene, uint x, uint y)
     return (((y >> shift) * scene->tiles_x + (x >> shift)) << (2 * shift)) + ((y & inner) << shift) + (x & inner);
 }
 
+#if VIT_WITH(SPARSE)
 /* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
  * and no light yet. */
 kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
-                        global const sample_coordinate *position, global const uint *normal, ESTIMATE_BAKED, global const float *coarse,
+                        global const float *position, global const uint *normal, ESTIMATE_BAKED, global const float *coarse,
                         global float *indirect, global uint *flags)
 {
     uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
@@ -179,28 +179,28 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         around[k] = sparse_block(scene, bx + (k & 1), by + (k >> 1));
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
-        li has = L_GE(L_AS_INT(L_LOAD(keys + first)), (li)0), pixel = (int)at + L_INDEX;
+        li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
-        lv3 sum = lv3_set((lf)0, (lf)0, (lf)0), p = own.p, s = own.s;
-        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, (lf)1e-30f);
-        lf weights = (lf)0, x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
+        lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
+        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, L_F(1e-30f));
+        lf weights = L_F(0), x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
                 uint from = around[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)], k = cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW;
-                lf tent = l_max(1.0f - fabs(x - (float)cx), (lf)0) * l_max(1.0f - fabs(y - (float)cy), (lf)0);
+                lf tent = l_max(1.0f - fabs(x - (float)cx), L_F(0)) * l_max(1.0f - fabs(y - (float)cy), L_F(0));
                 global const float *c = coarse + ((size_t)from * SPARSE_BLOCK + k) * SPARSE_FLOATS;
-                if (from == VIT_NONE || !l_any(has & L_GT(tent, (lf)0)) || c[0] < 0)
+                if (from == VIT_NONE || !l_any(has & L_GT(tent, L_F(0))) || c[0] < 0)
                     continue;
                 lf w = tent * sparse_agreement(c, p, s, per_step);
-#if VIT_EFFECT_ZONES
-                uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
-                w = l_sel(L_EQ(own.accept, (li)(int)accept[sample]), w, (lf)0); /* the same photons count for both */
-#endif
+                if (VIT_EFFECT_ZONES) { /* the same photons count for both */
+                    uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
+                    w = l_sel(L_EQ(own.accept, L_I((int)accept[sample])), w, L_F(0));
+                }
                 sum = lv3_along(sum, lv3_load(c), w);
                 weights += w;
             }
-        li good = has & L_GE(weights, (lf)SPARSE_LEAST);
-        lf scale = l_sel(good, 1.0f / l_max(weights, (lf)SPARSE_LEAST), (lf)0);
+        li good = has & L_GE(weights, L_F(SPARSE_LEAST));
+        lf scale = l_sel(good, 1.0f / l_max(weights, L_F(SPARSE_LEAST)), L_F(0));
         lv3_store_planes(estimate_normalise(&own, lv3_scale(sum, scale)), indirect, n, first);
         flagged |= l_bits(has & ~good) << at;
     }

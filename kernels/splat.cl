@@ -1,7 +1,6 @@
 /* Pass 7: which photons reach which clusters. METHODS.md P, step 8, turned round: a work-group owns a node and sorts its photons
  * into its children, level by level from the root, which holds all. Lists are in the photons' order by construction, so no
  * atomics, and sums over them are the same on every device. Tests of a batch of photons against a child run in lanes. */
-#if VIT_EFFECT_PHOTONS
 
 #define SPLAT_BATCH 256
 
@@ -10,9 +9,7 @@ typedef struct splat_batch {
     float x[SPLAT_BATCH], y[SPLAT_BATCH], z[SPLAT_BATCH], radius2[SPLAT_BATCH];
     float dx[SPLAT_BATCH], dy[SPLAT_BATCH], dz[SPLAT_BATCH];
     uint id[SPLAT_BATCH];
-#if VIT_EFFECT_ZONES
-    uint zone[SPLAT_BATCH];
-#endif
+    uint zone[VIT_WITH(ZONES) ? SPLAT_BATCH : 1];
 } splat_batch;
 
 /* Fills the batch with photons begin .. begin + SPLAT_BATCH - 1 of a list; what is beyond `count` is empty. */
@@ -30,17 +27,14 @@ static inline void splat_load(local splat_batch *b, global const vit_photon *pho
         b->dy[i] = p->direction[1];
         b->dz[i] = p->direction[2];
         b->id[i] = id;
-#if VIT_EFFECT_ZONES
-        b->zone[i] = p->zone;
-#endif
+        if (VIT_EFFECT_ZONES)
+            b->zone[i] = p->zone;
     }
 }
 
 typedef struct splat_box {
     float lo[3], hi[3], nlo[3], nhi[3];
-#if VIT_EFFECT_ZONES
-    uint accept;
-#endif
+    uint accept; /* with zones: those that count for any sample in it */
 } splat_box;
 
 static inline splat_box splat_node(global const int *bounds, uint max_nodes, uint node)
@@ -52,9 +46,7 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
         r.nlo[k] = vit_from_ordered(VIT_PLANE(bounds, 6 + k, max_nodes)[node]);
         r.nhi[k] = vit_from_ordered(VIT_PLANE(bounds, 9 + k, max_nodes)[node]);
     }
-#if VIT_EFFECT_ZONES
-    r.accept = (uint)VIT_PLANE(bounds, 12, max_nodes)[node];
-#endif
+    r.accept = VIT_EFFECT_ZONES ? (uint)VIT_PLANE(bounds, 12, max_nodes)[node] : 0;
     return r;
 }
 
@@ -65,16 +57,14 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
 static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
 {
     lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
-    lf ox = x - l_max((lf)box->lo[0], l_min(x, (lf)box->hi[0])), oy = y - l_max((lf)box->lo[1], l_min(y, (lf)box->hi[1])),
-       oz = z - l_max((lf)box->lo[2], l_min(z, (lf)box->hi[2]));
+    lf ox = x - l_max(L_F(box->lo[0]), l_min(x, L_F(box->hi[0]))), oy = y - l_max(L_F(box->lo[1]), l_min(y, L_F(box->hi[1]))),
+       oz = z - l_max(L_F(box->lo[2]), l_min(z, L_F(box->hi[2])));
     li near = L_LT(fma(oz, oz, fma(oy, oy, ox * ox)), SPLAT_LOAD(b->radius2 + i));
-#if VIT_EFFECT_ZONES
-    return near & L_NE(L_AS_INT(L_LOAD((local const uint *)(b->zone + i)) & box->accept), (li)0);
-#else
+    if (VIT_EFFECT_ZONES)
+        return near & L_NE(L_AS_INT(L_LOAD((local const uint *)(b->zone + i)) & box->accept), L_I(0));
     lf dx = SPLAT_LOAD(b->dx + i), dy = SPLAT_LOAD(b->dy + i), dz = SPLAT_LOAD(b->dz + i);
     lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) + l_min(dz * box->nlo[2], dz * box->nhi[2]);
-    return near & L_LT(least, (lf)0);
-#endif
+    return near & L_LT(least, L_F(0));
 }
 
 /* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is
@@ -109,6 +99,7 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
 
 #define SPLAT_CHILDREN 32 /* of a node, at most: places a chunk has in chunk_count */
 
+#if VIT_WITH(PHOTONS)
 kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
                         global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
                         global const uint *list_first, global uint *list_count, global const uint *list, global uint *chunk_count,
@@ -197,26 +188,24 @@ kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint leve
     WORK_END
 }
 
-#if VIT_EFFECT_BUCKETS
+#endif
 
-#if VIT_EFFECT_RAW_BUCKETS
-#define BUCKETS 54 /* directions on a cube, 6 faces x 3 x 3: METHODS.md P, step 8 */
+/* Buckets of a cluster: raw, directions on a cube, 6 faces x 3 x 3 (METHODS.md P, step 8), else octants: whether a photon comes from
+ * the front of an axis-parallel surface is exact. */
+#define BUCKETS (VIT_EFFECT_RAW_BUCKETS ? 54u : 8u)
+
 static inline uint bucket_of(float x, float y, float z)
 {
+    if (!VIT_EFFECT_RAW_BUCKETS)
+        return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
     float ax = fabs(x), ay = fabs(y), az = fabs(z);
     int on_x = ax >= ay && ax >= az, on_y = !on_x && ay >= az;
     float major = on_x ? x : on_y ? y : z, u = on_x ? y : x, v = on_x || on_y ? z : y, scale = 1.5f / vit_max(fabs(major), 1e-9f);
     int iu = min((int)fma(u, scale, 1.5f), 2), iv = min((int)fma(v, scale, 1.5f), 2);
     return (uint)((on_x ? 0 : on_y ? 2 : 4) + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
 }
-#else
-#define BUCKETS 8 /* octants: whether a photon comes from the front of an axis-parallel surface is exact */
-static inline uint bucket_of(float x, float y, float z)
-{
-    return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
-}
-#endif
 
+#if VIT_WITH(BUCKETS)
 /* The clusters' level (chunks is 1): each photon's power goes, weighted by the kernel at the box's centre, into the bucket of the
  * direction that it comes from. */
 kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
@@ -229,7 +218,7 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
     for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {
         list_count[child_first + c] = 0;
         for (uint i = 0; i < BUCKETS; i++)
-            vstore4((float4)(0), (child_first + c) * BUCKETS + i, buckets);
+            vstore4(VIT_FLOAT4(0, 0, 0, 0), (child_first + c) * BUCKETS + i, buckets);
     }
     SPLAT_BEGIN
         float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
@@ -241,12 +230,12 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
             sum += (uint)popcount(hits);
             lf ox = SPLAT_LOAD(batch.x + i) - cx, oy = SPLAT_LOAD(batch.y + i) - cy, oz = SPLAT_LOAD(batch.z + i) - cz;
             lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
-#if VIT_EFFECT_FLATTENED
-            float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
-            float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? 1.0f / sqrt(m2) : 0;
-            lf off = fma(oz, (lf)(mz * unit), fma(oy, (lf)(my * unit), ox * (mx * unit)));
-            d2 = fma(off * off, (lf)scene->flatten, d2);
-#endif
+            if (VIT_EFFECT_FLATTENED) {
+                float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
+                float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? 1.0f / sqrt(m2) : 0;
+                lf off = fma(oz, L_F(mz * unit), fma(oy, L_F(my * unit), ox * (mx * unit)));
+                d2 = fma(off * off, L_F(scene->flatten), d2);
+            }
             hits &= l_bits(L_LT(d2, r2));
             float weight[VIT_LANES];
             L_STORE(1.0f - d2 / r2, weight);
@@ -254,7 +243,7 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
                 uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
                 global const vit_photon *p = photons + batch.id[k];
                 uint at = child * BUCKETS + bucket_of(-batch.dx[k], -batch.dy[k], -batch.dz[k]);
-                vstore4(vload4(at, buckets) + (float4)(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
+                vstore4(vload4(at, buckets) + VIT_FLOAT4(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
             }
         }
         list_count[child] += sum;
@@ -267,5 +256,4 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
     for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
         atomic_max(counters + VIT_COUNTER_largest, list_count[child_first + c]);
 }
-#endif
 #endif

@@ -7,8 +7,8 @@ kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, u
     li x, y;
     l_pixel(scene, first, &x, &y);
     li inside = l_inside(scene, x, y);
-    lf t = (lf)3e38f;
-    li triangle = (li)(int)VIT_NONE;
+    lf t = L_F(3e38f);
+    li triangle = L_I((int)VIT_NONE);
     WORK_BEGIN
     WORK_LANES(view_rays, inside);
     if (l_any(inside)) {

@@ -7,7 +7,7 @@ enum { POINTS = 1 << 14 };
 
 static const char kernels[] =
     "kernel void there_and_back(global const vit_scene *scene, global const float *in, global const float *face,\n"
-    "                           global sample_coordinate *position, global float *out, global float *gathered)\n"
+    "                           global float *position, global float *out, global float *gathered)\n"
     "{\n"
     "    uint n = scene->samples, first = (uint)get_global_id(0) * VIT_LANES;\n"
     "    lv3 p = lv3_load_planes(in, n, first), f = lv3_load_planes(face, n, first);\n"
