@@ -1,13 +1,15 @@
 # Vitrine. `make demo` and `make test` do everything on a fresh machine; `make help` lists the rest.
 #   config=release|debug|sanitize   (default release; each builds into build/$(config))
+#   OPENCL=0                        without OpenCL: the built-in device `host` alone
 config ?= release
-B := build/$(config)
+OPENCL ?= 1
+B := build/$(config)$(if $(filter 0,$(OPENCL)),-no-opencl)
 CC ?= cc
 prefix ?= /usr/local
 
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Werror
 # Same bits on every host too: no contraction, no reassociation.
-BASE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -DCL_TARGET_OPENCL_VERSION=120 -ffp-contract=off -MMD -MP -Iinclude
+BASE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -DCL_TARGET_OPENCL_VERSION=120 -DVIT_OPENCL=$(OPENCL) -pthread -ffp-contract=off -MMD -MP -Iinclude
 ifeq ($(config),release)
 OPT := -O2 -g
 else ifeq ($(config),debug)
@@ -23,7 +25,7 @@ CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh surface.clh cells.clh visibility.cl samples.cl direct.cl \
            photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl sparse.cl resolve.cl
 
-RUNTIME := $(wildcard runtime/*.c)
+RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)
 BAKE := $(wildcard bake/*.c)
 COST := $(wildcard bake/cost/*.c)
@@ -37,11 +39,27 @@ obj = $(patsubst %.c,$(B)/%.o,$(1))
 COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
 # Libraries. Embree 3 or 4, whichever is installed.
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
-LIBS_RUNTIME := -lOpenCL
+LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 # Open MPI, if it is installed, spreads references over machines (bake/cost/spread.h).
 LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
+
+# The device `host`: runtime/host/kernels.c once for each instruction set, best first, and each number of lanes.
+HOST_LANES := 1 8 16
+HOST_ISAS := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine)),avx512 avx2) baseline
+HOST_FLAGS_avx2 := -mavx2 -mfma
+HOST_FLAGS_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mprefer-vector-width=512
+ifeq ($(config),sanitize)
+HOST_LANES := 1 8
+HOST_ISAS := baseline
+endif
+HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
+# Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
+# are not looked at, and records are read as other types.
+HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -fno-math-errno \
+               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-O3 -g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow) -I. -I$(B) $(CFLAGS)
+HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
 .PHONY: all tools help deps demo run-demo cost run-cost test bench clean install format
@@ -57,6 +75,18 @@ $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 	   echo 'const char *const vit_kernel_sources[] = {'; \
 	   for f in $(KERNELS); do printf '"#line 1 \\"%s\\"\\n"\n' $$f; sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' kernels/$$f; echo ','; done; \
 	   echo '};'; echo 'const unsigned vit_kernel_source_count = sizeof vit_kernel_sources / sizeof vit_kernel_sources[0];'; } > $@
+
+$(B)/kernel_list.h: Makefile
+	@mkdir -p $(@D)
+	@for f in $(filter-out records.clh,$(KERNELS)); do echo "#include \"kernels/$$f\""; done > $@
+$(B)/host_programs.h: Makefile
+	@mkdir -p $(@D)
+	@for p in $(HOST_PROGRAMS); do echo "PROGRAM($${p%_*}, $${p##*_})"; done > $@
+$(HOST_OBJECTS): $(B)/host_%.o: runtime/host/kernels.c $(B)/kernel_list.h
+	$(CC) $(HOST_CFLAGS) $(HOST_FLAGS_$(firstword $(subst _, ,$*))) -DVIT_LANES=$(lastword $(subst _, ,$*)) \
+	   -DHOST_ISA='"$(firstword $(subst _, ,$*))"' -DHOST_PROGRAM=vit_host_$* -c $< -o $@
+$(B)/runtime/host/programs.o: CFLAGS_ALL += -I$(B)
+$(B)/runtime/host/programs.o: $(B)/host_programs.h
 
 # The report's style sheet and script as C strings.
 $(B)/report_files.c: bake/cost/report.css bake/cost/report.js Makefile
@@ -80,7 +110,7 @@ $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
 
-$(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(B)/kernel_sources.o
+$(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(HOST_OBJECTS) $(if $(filter 0,$(OPENCL)),,$(B)/kernel_sources.o)
 	@rm -f $@
 	$(AR) rcs $@ $^
 $(B)/vitrine-play: $(call obj,$(PLAY)) $(B)/libvitrine.a

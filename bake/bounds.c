@@ -29,9 +29,9 @@ static vit_status out_of_memory(vit_text *why) {
     return VIT_FAILED;
 }
 
-static vit_status run_begin(run *r, const pack_sections *sections, uint32_t device, vit_format format, vit_text *why) {
+static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, vit_text *why) {
     vit_requirements need;
-    vit_open_info info = {.device = device, .format = format};
+    vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
     memset(r, 0, sizeof *r);
     vit_status status = pack_assemble(sections, &r->pack, &info.pack_size, why);
     if (status != VIT_OK)
@@ -87,7 +87,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     if (in->progress)
         in->progress(in->user, "depth slices", 0);
     if (status == VIT_OK)
-        status = run_begin(&r, &sections, in->device, VIT_FORMAT_XRGB8888, why);
+        status = run_begin(&r, in, &sections, VIT_FORMAT_XRGB8888, why);
     free(dark);
     if (status != VIT_OK)
         return status;
@@ -125,7 +125,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
     run r;
     if (in->progress)
         in->progress(in->user, "frames", (double)*next / s->frames);
-    vit_status status = run_begin(&r, in->sections, in->device, VIT_FORMAT_XRGB8888, why);
+    vit_status status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, why);
     while (status == VIT_OK && *next < s->frames) {
         vit_statistics t;
         status = frame(in, &r, *next, "frames", why);
@@ -164,7 +164,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
 
 static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why) {
     run r;
-    vit_status status = run_begin(&r, in->sections, in->device, format, why);
+    vit_status status = run_begin(&r, in, in->sections, format, why);
     for (uint32_t i = 0; i < in->scene->frames && status == VIT_OK; i++) {
         status = frame(in, &r, i, format == VIT_FORMAT_RGB565 ? "RGB565 hashes" : "RGBA32F hashes", why);
         split(format == VIT_FORMAT_RGB565 ? in->gold[i].rgb565 : in->gold[i].rgba32f, vit_hash(r.frame, r.stride * in->scene->height));
@@ -186,7 +186,7 @@ vit_status bounds_count_photons(bounds_input *in, double *stored, vit_text *why)
         in->progress(in->user, "photon radius", 0);
     vit_status status = vit_pack_derive(s, why);
     if (status == VIT_OK)
-        status = run_begin(&r, in->sections, in->device, VIT_FORMAT_XRGB8888, why);
+        status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, why);
     if (status != VIT_OK)
         return status;
     for (uint32_t i = 0; i < probes && status == VIT_OK; i++) {

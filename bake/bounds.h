@@ -11,7 +11,7 @@ typedef struct bounds_input {
     pack_sections *sections;   /* META is `scene`; GOLD is written by the runs */
     vit_scene *scene;          /* slices and bounds are filled in */
     vit_gold *gold;            /* scene->frames records, filled in */
-    uint32_t device;
+    uint32_t device, threads;  /* as in vit_open_info */
     int all_formats;           /* golden hashes of RGB565 and RGBA32F too: two more runs */
     bounds_progress_fn *progress;
     void *user;

@@ -31,7 +31,7 @@ static vit_status make_pack(bake *b, vit_text *why) {
     p->strict = b->options.strict;
     p->all_formats = b->options.all_formats;
     p->threads = b->options.threads;
-    p->device = b->options.device;
+    p->device = b->options.device_given ? b->options.device : vit_device_default();
     p->progress = &b->progress;
     vit_status status = pipeline_read(b->options.input, &p->scene, why);
     if (status == VIT_OK)

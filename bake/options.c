@@ -108,9 +108,10 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         o->threads = (unsigned)n;
         return good;
     }
-    if (strcmp(name, "--device") == 0 && (*wants = "a device's number (vitrine-play --list-devices)")) {
-        bool good = whole(value, 0, 1023, &n);
-        o->device = (uint32_t)n;
+    if (strcmp(name, "--device") == 0 && (*wants = "a device's number (vitrine-play --list-devices), or host")) {
+        bool host = value && strcmp(value, "host") == 0, good = host || whole(value, 0, 1023, &n);
+        o->device = host ? VIT_DEVICE_HOST : (uint32_t)n;
+        o->device_given = good;
         return good;
     }
     if (strcmp(name, "--size") == 0)
@@ -206,8 +207,9 @@ void options_help(void) {
          "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
          "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
          "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"
-         "  --threads N           of the baker (default: all cores); changes no byte\n"
-         "  --device N            OpenCL device for measuring bounds and hashes (default 0); changes no byte\n"
+         "  --threads N           of the baker and the device host (default: all cores); changes no byte\n"
+         "  --device N|host       measures bounds and hashes: an OpenCL device, or the built-in one (default 0, or host if there\n"
+         "                        is no OpenCL); changes no byte\n"
          "  --quiet               warnings and errors only\n"
          "  --version, --help\n"
          "\n"

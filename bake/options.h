@@ -9,6 +9,7 @@ typedef struct options {
     bool explain, strict, quiet, all_formats, help, version;
     unsigned threads;          /* 0: all cores */
     uint32_t device;
+    bool device_given;         /* else the default */
     /* Overrides of the scene file; 0, NULL or negative: none. */
     int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits;
     double radius;             /* 0 with radius_given: auto */

@@ -214,6 +214,7 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
                        .scene = &out->plan.scene,
                        .gold = out->gold,
                        .device = p->device,
+                       .threads = p->threads,
                        .all_formats = p->all_formats,
                        .progress = measuring,
                        .user = p->progress};

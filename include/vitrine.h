@@ -1,4 +1,4 @@
-/* Vitrine: plays a baked scene with global illumination, the same bits on every OpenCL device.
+/* Vitrine: plays a baked scene with global illumination, the same bits on every device.
  *
  *     vit_requirements need;
  *     vit_text why;
@@ -81,7 +81,9 @@ typedef struct vit_open_info {
     size_t pack_size;          /* bytes */
     void *arena;               /* host memory for the library, 64-byte aligned, at least vit_requirements.host_bytes */
     size_t arena_size;         /* bytes */
-    uint32_t device;           /* index as vit_device_name() counts; 0: the first */
+    uint32_t device;           /* index as vit_device_name() counts; 0: the first of OpenCL; VIT_DEVICE_HOST */
+    uint32_t threads;          /* VIT_DEVICE_HOST: 1 to 256; 0: one a processor. Changes no bit */
+    const char *host_isa;      /* VIT_DEVICE_HOST: "baseline" or, on x86-64, "avx2", "avx512"; NULL: the best. Changes no bit (tests) */
     uint32_t lanes;            /* samples a work-item: 1, 8 or 16; 0: what suits the device. Changes no bit */
     uint32_t group;            /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
     vit_format format;
@@ -110,7 +112,8 @@ typedef struct vit_requirements {
     uint32_t frames;
     float fps;
     uint32_t effects;          /* VIT_EFFECT_BIT_* of the pack */
-    size_t host_bytes;         /* arena */
+    size_t host_bytes;         /* arena; with VIT_DEVICE_HOST buffers too, but not what is used in place: the pack's sections and, if
+                                * it was given, vit_open_info.framebuffer */
     uint64_t device_bytes;     /* sum of buffers[].bytes */
     uint32_t buffer_count;
     vit_buffer_info buffers[VIT_MAX_BUFFERS];
@@ -138,8 +141,14 @@ typedef struct vit_statistics {
 
 typedef struct vit vit;
 
-/* "OpenCL platform / device / driver" of device `index`; NULL beyond the last. The text lives in `why`. */
+/* The built-in device: the kernels compiled as C and run by threads, needs no OpenCL. Its buffers lie in the arena. */
+#define VIT_DEVICE_HOST 0xffffffffu
+
+/* "OpenCL platform / device / driver" of device `index`, or of VIT_DEVICE_HOST; NULL beyond the last of OpenCL. The text lives in `why`. */
 const char *vit_device_name(uint32_t index, vit_text *why);
+
+/* 0, the first device of OpenCL; VIT_DEVICE_HOST if there is none. */
+uint32_t vit_device_default(void);
 
 /* Checks the pack wholly and says what vit_open() will take. Allocates nothing; `arena` may be NULL.
  * VIT_BAD_INPUT: the text names section and cause. VIT_USAGE: an option is out of range. */

@@ -35,17 +35,17 @@ static const char *error_name(cl_int error) {
     }
 }
 
-vit_status vit_cl_failed(vit_text *why, const char *call, cl_int error) {
+static vit_status failed(vit_text *why, const char *call, cl_int error) {
     snprintf(why->text, sizeof why->text, "OpenCL: %s: %s (%d)", call, error_name(error), (int)error);
     return VIT_FAILED;
 }
 
-vit_status vit_device_find(uint32_t index, cl_device_id *id, vit_text *why) {
+static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
     cl_platform_id platforms[MAX_PLATFORMS];
     cl_uint platform_count = 0, seen = 0;
     cl_int e = clGetPlatformIDs(MAX_PLATFORMS, platforms, &platform_count);
     if (e != CL_SUCCESS)
-        return vit_cl_failed(why, "clGetPlatformIDs", e);
+        return failed(why, "clGetPlatformIDs", e);
     if (platform_count > MAX_PLATFORMS)
         platform_count = MAX_PLATFORMS;
     for (cl_uint p = 0; p < platform_count; p++) {
@@ -65,11 +65,11 @@ vit_status vit_device_find(uint32_t index, cl_device_id *id, vit_text *why) {
     return VIT_FAILED;
 }
 
-const char *vit_device_name(uint32_t index, vit_text *why) {
+const char *vit_opencl_name(uint32_t index, vit_text *why) {
     cl_device_id id;
     cl_platform_id platform;
     char names[3][150] = {"?", "?", "?"};
-    if (vit_device_find(index, &id, why) != VIT_OK)
+    if (find(index, &id, why) != VIT_OK)
         return NULL;
     if (clGetDeviceInfo(id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL) == CL_SUCCESS)
         clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof names[0], names[0], NULL);
@@ -79,10 +79,13 @@ const char *vit_device_name(uint32_t index, vit_text *why) {
     return why->text;
 }
 
-void vit_device_suit(cl_device_id id, const vit_scene *s, vit_limits *l) {
+static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
+    cl_device_id id;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
     cl_uint width = 8;
     size_t most = 256;
+    if (find(info->device, &id, why) != VIT_OK)
+        return VIT_FAILED;
     clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
     clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof most, &most, NULL);
@@ -99,6 +102,7 @@ void vit_device_suit(cl_device_id id, const vit_scene *s, vit_limits *l) {
     }
     l->run = cpu ? s->tile * s->tile : 16;
     l->chunks = cpu ? 16 : VIT_CHUNKS;
+    return VIT_OK;
 }
 
 /* Options of the one program: exactly this effect set, view, format and width. */
@@ -114,17 +118,17 @@ static int build_options(char *text, size_t size, const vit_limits *l) {
     return n < (int)size;
 }
 
-static vit_status build(vit_device *d, const vit_limits *l, vit_text *why) {
+static vit_status build(vit_opencl *d, const vit_limits *l, vit_text *why) {
     char options[2048];
     cl_int e;
     if (!build_options(options, sizeof options, l))
-        return vit_cl_failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);
+        return failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);
     d->program = clCreateProgramWithSource(d->context, vit_kernel_source_count, (const char **)(uintptr_t)vit_kernel_sources, NULL, &e);
     if (e != CL_SUCCESS)
-        return vit_cl_failed(why, "clCreateProgramWithSource", e);
+        return failed(why, "clCreateProgramWithSource", e);
     e = clBuildProgram(d->program, 1, &d->id, options, NULL, NULL);
     if (e != CL_SUCCESS) {
-        vit_cl_failed(why, "clBuildProgram", e);
+        failed(why, "clBuildProgram", e);
         if (clGetProgramBuildInfo(d->program, d->id, CL_PROGRAM_BUILD_LOG, sizeof d->log, d->log, NULL) == CL_SUCCESS) {
             size_t n = strlen(why->text);
             snprintf(why->text + n, sizeof why->text - n, ": %s", d->log);
@@ -139,14 +143,23 @@ static vit_status build(vit_device *d, const vit_limits *l, vit_text *why) {
             continue;
         d->kernels[p] = clCreateKernel(d->program, vit_passes[p].name, &e);
         if (e != CL_SUCCESS)
-            return vit_cl_failed(why, vit_passes[p].name, e);
+            return failed(why, vit_passes[p].name, e);
     }
     return VIT_OK;
 }
 
+static vit_status clear(void *state, vit_buffer b, vit_text *why) {
+    static const uint32_t zero = 0;
+    vit_opencl *d = state;
+    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
+    size_t pattern = bytes % 4 == 0 ? 4 : 2; /* RGB565 frames of odd size */
+    cl_int e = clEnqueueFillBuffer(d->queue, d->buffers[b], &zero, pattern, 0, (size_t)bytes, 0, NULL, NULL);
+    return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueFillBuffer", e);
+}
+
 /* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat. */
-static vit_status make_buffer(vit_device *d, uint32_t b, const vit_pack *pack, const vit_limits *l, void *framebuffer, vit_text *why) {
-    uint64_t bytes = vit_buffer_bytes(b, pack->scene, l);
+static vit_status make_buffer(vit_opencl *d, uint32_t b, const vit_pack *pack, void *framebuffer, vit_text *why) {
+    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
     vit_section section = vit_buffer_sections[b];
     cl_int e;
     if (bytes == 0)
@@ -154,29 +167,27 @@ static vit_status make_buffer(vit_device *d, uint32_t b, const vit_pack *pack, c
     if (section != VIT_SECTION_NONE) {
         cl_mem_flags flags = CL_MEM_READ_ONLY | (d->is_cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR);
         d->buffers[b] = clCreateBuffer(d->context, flags, (size_t)bytes, (void *)(uintptr_t)pack->section[section], &e);
-        return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, vit_buffer_names[b], e);
+        return e == CL_SUCCESS ? VIT_OK : failed(why, vit_buffer_names[b], e);
     }
     void *host = b == B_framebuffer && d->is_cpu ? framebuffer : NULL;
     d->buffers[b] = clCreateBuffer(d->context, CL_MEM_READ_WRITE | (host ? CL_MEM_USE_HOST_PTR : 0), (size_t)bytes, host, &e);
     if (e != CL_SUCCESS)
-        return vit_cl_failed(why, vit_buffer_names[b], e);
-    static const uint32_t zero = 0;
-    size_t pattern = bytes % 4 == 0 ? 4 : 2; /* RGB565 frames of odd size */
-    e = clEnqueueFillBuffer(d->queue, d->buffers[b], &zero, pattern, 0, (size_t)bytes, 0, NULL, NULL);
-    return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, "clEnqueueFillBuffer", e);
+        return failed(why, vit_buffer_names[b], e);
+    return clear(d, (vit_buffer)b, why);
 }
 
-static vit_status upload_baked_photons(vit_device *d, const vit_pack *pack, vit_text *why) {
+static vit_status upload_baked_photons(vit_opencl *d, const vit_pack *pack, vit_text *why) {
     const vit_scene *s = pack->scene;
     size_t size = s->baked * sizeof(vit_photon), at = (s->photons - s->baked) * sizeof(vit_photon);
     if (s->baked == 0 || !d->buffers[B_photons])
         return VIT_OK;
     cl_int e = clEnqueueWriteBuffer(d->queue, d->buffers[B_photons], CL_TRUE, at, size, pack->section[VIT_SECTION_PHOT], 0, NULL, NULL);
-    return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, "clEnqueueWriteBuffer", e);
+    return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueWriteBuffer", e);
 }
 
 /* Arguments that never change; frame and level are set when a pass is enqueued. */
-static vit_status set_arguments(vit_device *d, const vit_limits *l, vit_text *why) {
+static vit_status set_arguments(vit_opencl *d, vit_text *why) {
+    const vit_limits *l = d->limits;
     for (uint32_t p = 0; p < vit_pass_count; p++) {
         if (!d->kernels[p])
             continue;
@@ -189,7 +200,7 @@ static vit_status set_arguments(vit_device *d, const vit_limits *l, vit_text *wh
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
             if (e != CL_SUCCESS)
-                return vit_cl_failed(why, vit_passes[p].name, e);
+                return failed(why, vit_passes[p].name, e);
         }
     }
     return VIT_OK;
@@ -206,34 +217,47 @@ static vit_status check_arithmetic(cl_device_id id, vit_text *why) {
     return VIT_FAILED;
 }
 
-vit_status vit_device_open(vit_device *d, const vit_pack *pack, const vit_limits *l, int profile, void *framebuffer, vit_text *why) {
+static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text *why) {
     cl_int e;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
     clGetDeviceInfo(d->id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
     d->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+    d->in_place = d->is_cpu ? setup->info->framebuffer : NULL;
     if (check_arithmetic(d->id, why) != VIT_OK)
         return VIT_FAILED;
     d->context = clCreateContext(NULL, 1, &d->id, NULL, NULL, &e);
     if (e != CL_SUCCESS)
-        return vit_cl_failed(why, "clCreateContext", e);
-    d->queue = clCreateCommandQueue(d->context, d->id, profile ? CL_QUEUE_PROFILING_ENABLE : 0, &e);
+        return failed(why, "clCreateContext", e);
+    d->queue = clCreateCommandQueue(d->context, d->id, d->profile ? CL_QUEUE_PROFILING_ENABLE : 0, &e);
     if (e != CL_SUCCESS)
-        return vit_cl_failed(why, "clCreateCommandQueue", e);
-    vit_status status = build(d, l, why);
+        return failed(why, "clCreateCommandQueue", e);
+    vit_status status = build(d, d->limits, why);
     for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
-        status = make_buffer(d, b, pack, l, framebuffer, why);
+        status = make_buffer(d, b, setup->pack, setup->info->framebuffer, why);
     if (status == VIT_OK)
-        status = upload_baked_photons(d, pack, why);
+        status = upload_baked_photons(d, setup->pack, why);
     if (status == VIT_OK)
-        status = set_arguments(d, l, why);
+        status = set_arguments(d, why);
     if (status == VIT_OK && (e = clFinish(d->queue)) != CL_SUCCESS)
-        status = vit_cl_failed(why, "clFinish", e);
+        status = failed(why, "clFinish", e);
     return status;
 }
 
-void vit_device_close(vit_device *d) {
+static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
+    vit_opencl *d = setup->state;
+    d->scene = setup->pack->scene;
+    d->limits = setup->limits;
+    d->profile = setup->info->profile != 0;
+    vit_status status = find(setup->info->device, &d->id, why);
+    return status == VIT_OK ? open_on(d, setup, why) : status;
+}
+
+static void close_device(void *state) {
+    vit_opencl *d = state;
     if (d->queue)
         clFinish(d->queue);
+    for (uint32_t i = 0; i < d->enqueued; i++)
+        clReleaseEvent(d->events[i]);
     for (uint32_t b = 0; b < B_COUNT; b++)
         if (d->buffers[b])
             clReleaseMemObject(d->buffers[b]);
@@ -248,3 +272,92 @@ void vit_device_close(vit_device *d) {
         clReleaseContext(d->context);
     memset(d, 0, sizeof *d);
 }
+
+static vit_status set_varying(vit_opencl *d, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
+    for (uint32_t i = 0; vit_passes[pass].args[i] != V_END; i++) {
+        uint32_t a = vit_passes[pass].args[i];
+        if (a != V_frame && a != V_level && a != V_chunks)
+            continue;
+        uint32_t value = a == V_frame ? frame : a == V_level ? level : vit_pass_chunks(&vit_passes[pass], d->limits, level);
+        cl_int e = clSetKernelArg(d->kernels[pass], i, sizeof value, &value);
+        if (e != CL_SUCCESS)
+            return failed(why, vit_passes[pass].name, e);
+    }
+    return VIT_OK;
+}
+
+static vit_status run(void *state, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
+    vit_opencl *d = state;
+    size_t local, global;
+    cl_event *event = NULL;
+    vit_pass_size(&vit_passes[pass], d->scene, d->limits, level, &local, &global);
+    vit_status status = set_varying(d, pass, level, frame, why);
+    if (status != VIT_OK || global == 0)
+        return status;
+    if (d->profile && d->enqueued < VIT_MAX_ENQUEUES) {
+        d->enqueued_pass[d->enqueued] = pass;
+        event = &d->events[d->enqueued];
+    }
+    cl_int e = clEnqueueNDRangeKernel(d->queue, d->kernels[pass], 1, NULL, &global, &local, 0, NULL, event);
+    if (e != CL_SUCCESS)
+        return failed(why, vit_passes[pass].name, e);
+    if (event)
+        d->enqueued++;
+    return VIT_OK;
+}
+
+static vit_status read_buffer(void *state, vit_buffer b, size_t bytes, void *out, vit_text *why) {
+    vit_opencl *d = state;
+    cl_int e = clEnqueueReadBuffer(d->queue, d->buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL);
+    return e == CL_SUCCESS ? VIT_OK : failed(why, vit_buffer_names[b], e);
+}
+
+/* The frame is in the caller's memory already: mapping waits for it and says that the host may look. */
+static cl_int show_in_place(vit_opencl *d, size_t bytes) {
+    cl_int e;
+    cl_mem b = d->buffers[B_framebuffer];
+    void *at = clEnqueueMapBuffer(d->queue, b, CL_TRUE, CL_MAP_READ, 0, bytes, 0, NULL, NULL, &e);
+    return e == CL_SUCCESS ? clEnqueueUnmapMemObject(d->queue, b, at, 0, NULL, NULL) : e;
+}
+
+static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
+    vit_opencl *d = state;
+    const vit_scene *s = d->scene;
+    size_t row = (size_t)s->width * vit_format_bytes(d->limits->format), zero[3] = {0, 0, 0}, region[3] = {row, s->height, 1};
+    cl_int e;
+    if (!framebuffer)
+        e = clFinish(d->queue);
+    else if (framebuffer == d->in_place && stride == row)
+        e = show_in_place(d, row * s->height);
+    else if (stride == row)
+        e = clEnqueueReadBuffer(d->queue, d->buffers[B_framebuffer], CL_TRUE, 0, row * s->height, framebuffer, 0, NULL, NULL);
+    else
+        e = clEnqueueReadBufferRect(d->queue, d->buffers[B_framebuffer], CL_TRUE, zero, zero, region, row, 0, stride, 0, framebuffer, 0, NULL,
+                                    NULL);
+    return e == CL_SUCCESS ? VIT_OK : failed(why, "reading the frame", e);
+}
+
+/* Events are given back. */
+static void times(void *state, double *pass_ms) {
+    vit_opencl *d = state;
+    for (uint32_t p = 0; p < VIT_MAX_PASSES; p++)
+        pass_ms[p] = 0;
+    for (uint32_t i = 0; i < d->enqueued; i++) {
+        cl_ulong begin = 0, end = 0;
+        clGetEventProfilingInfo(d->events[i], CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL);
+        clGetEventProfilingInfo(d->events[i], CL_PROFILING_COMMAND_END, sizeof end, &end, NULL);
+        pass_ms[d->enqueued_pass[i]] += (double)(end - begin) * 1e-6;
+        clReleaseEvent(d->events[i]);
+    }
+    d->enqueued = 0;
+}
+
+/* Buffers are OpenCL's. */
+static size_t memory_bytes(const vit_scene *s, const vit_limits *l, int in_place) {
+    (void)s;
+    (void)l;
+    (void)in_place;
+    return 0;
+}
+
+const vit_device vit_device_opencl = {sizeof(vit_opencl), memory_bytes, suit, open_device, close_device, run, clear, read_buffer, show, times};

@@ -40,18 +40,24 @@ static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
     return l;
 }
 
-static size_t host_bytes(void) {
-    return (sizeof(vit) + 63) / 64 * 64;
+static size_t round_up(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
 }
 
-static void describe(const vit_scene *s, const vit_limits *l, vit_requirements *need) {
+/* The arena: vit, the device's state, its memory. SIZE_MAX: more than there can be. */
+static size_t host_bytes(const vit_device *d, const vit_scene *s, const vit_limits *l, int in_place) {
+    size_t own = round_up(sizeof(vit)) + round_up(d->state_bytes), memory = d->memory_bytes(s, l, in_place);
+    return memory <= SIZE_MAX - own ? own + memory : SIZE_MAX;
+}
+
+static void describe(const vit_device *d, const vit_scene *s, const vit_limits *l, int in_place, vit_requirements *need) {
     memset(need, 0, sizeof *need);
     need->width = s->width;
     need->height = s->height;
     need->frames = s->frames;
     need->fps = s->fps;
     need->effects = s->effects;
-    need->host_bytes = host_bytes();
+    need->host_bytes = host_bytes(d, s, l, in_place);
     need->frame_bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, l);
     for (uint32_t b = 0; b < B_COUNT; b++) {
         uint64_t bytes = vit_buffer_bytes(b, s, l);
@@ -65,56 +71,73 @@ static void describe(const vit_scene *s, const vit_limits *l, vit_requirements *
             need->passes[need->pass_count++] = vit_passes[p].name;
 }
 
-vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why) {
-    vit_pack pack;
+/* What vit_require() and vit_open() begin with. */
+static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits *l, const vit_device **device, vit_text *why) {
     vit_status status = check_options(info, why);
     if (status == VIT_OK)
-        status = vit_pack_read(info->pack, info->pack_size, &pack, why);
-    if (status != VIT_OK)
-        return status;
-    vit_limits l = limits_of(info, pack.scene);
-    describe(pack.scene, &l, need);
+        status = vit_device_of(info->device, device, why);
+    if (status == VIT_OK)
+        status = vit_pack_read(info->pack, info->pack_size, pack, why);
+    if (status == VIT_OK)
+        *l = limits_of(info, pack->scene);
+    return status;
+}
+
+vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why) {
+    vit_pack pack;
+    vit_limits l;
+    const vit_device *device;
+    vit_status status = look_at(info, &pack, &l, &device, why);
+    if (status == VIT_OK)
+        describe(device, pack.scene, &l, info->framebuffer != NULL, need);
+    return status;
+}
+
+/* Lays vit and the device's state out in the arena. */
+static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device, vit **out,
+                             vit_device_setup *setup, vit_text *why) {
+    size_t need = host_bytes(device, pack->scene, l, info->framebuffer != NULL);
+    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need) {
+        snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", need);
+        return VIT_USAGE;
+    }
+    vit *v = info->arena;
+    memset(v, 0, round_up(sizeof *v) + round_up(device->state_bytes));
+    v->pack = *pack;
+    v->limits = *l;
+    v->device = device;
+    v->state = (char *)info->arena + round_up(sizeof *v);
+    v->profile = info->profile != 0;
+    *setup = (vit_device_setup){info, &v->pack, &v->limits, v->state, (char *)v->state + round_up(device->state_bytes)};
+    *out = v;
     return VIT_OK;
 }
 
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     vit_pack pack;
+    vit_limits l;
+    vit_device_setup setup;
+    const vit_device *device;
+    vit *v = NULL;
     *out = NULL;
-    vit_status status = check_options(info, why);
+    vit_status status = look_at(info, &pack, &l, &device, why);
     if (status == VIT_OK)
-        status = vit_pack_read(info->pack, info->pack_size, &pack, why);
+        status = device->suit(info, pack.scene, &l, why);
+    if (status == VIT_OK)
+        status = take_arena(info, &pack, &l, device, &v, &setup, why);
     if (status != VIT_OK)
         return status;
-    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < host_bytes()) {
-        snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", host_bytes());
-        return VIT_USAGE;
-    }
-    vit *v = info->arena;
-    memset(v, 0, sizeof *v);
-    v->pack = pack;
-    v->profile = info->profile != 0;
-    v->limits = limits_of(info, pack.scene);
-    status = vit_device_find(info->device, &v->device.id, why);
-    if (status == VIT_OK) {
-        vit_device_suit(v->device.id, pack.scene, &v->limits);
-        status = vit_device_open(&v->device, &v->pack, &v->limits, v->profile, info->framebuffer, why);
-        v->in_place = v->device.is_cpu ? info->framebuffer : NULL;
-    }
-    if (status != VIT_OK) {
-        vit_device_close(&v->device);
-        return status;
-    }
-    *out = v;
-    return VIT_OK;
+    status = device->open(&setup, why);
+    if (status == VIT_OK)
+        *out = v;
+    else
+        device->close(v->state);
+    return status;
 }
 
 void vit_close(vit *v) {
-    if (!v)
-        return;
-    for (uint32_t i = 0; i < v->enqueued && v->profile; i++)
-        clReleaseEvent(v->events[i]);
-    v->enqueued = 0;
-    vit_device_close(&v->device);
+    if (v)
+        v->device->close(v->state);
 }
 
 uint64_t vit_golden(const vit *v, uint32_t index) {

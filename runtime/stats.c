@@ -3,18 +3,13 @@
 #include "work.h"
 #include <string.h>
 
-static vit_status read_buffer(vit *v, vit_buffer b, size_t bytes, void *out, vit_text *why) {
-    cl_int e = clEnqueueReadBuffer(v->device.queue, v->device.buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL);
-    return e == CL_SUCCESS ? VIT_OK : vit_cl_failed(why, "reading the counters", e);
-}
-
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
     uint32_t c[2 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];
     const uint32_t *total = c + VIT_COUNTER_COUNT;
     memset(out, 0, sizeof *out);
-    vit_status status = read_buffer(v, B_counters, sizeof c, c, why);
+    vit_status status = v->device->read(v->state, B_counters, sizeof c, c, why);
     if (status == VIT_OK && (v->limits.effects & ON_WORK))
-        status = read_buffer(v, B_work, sizeof work, work, why);
+        status = v->device->read(v->state, B_work, sizeof work, work, why);
     if (status != VIT_OK)
         return status;
     if (v->limits.effects & ON_WORK)

@@ -1,21 +1,16 @@
-/* An open pack: what vit_open() puts into the caller's arena. */
+/* An open pack: what vit_open() puts into the caller's arena. The device's state and memory follow it there. */
 #ifndef VIT_VIT_H
 #define VIT_VIT_H
 
-#include "device_opencl.h"
-
-#define VIT_MAX_ENQUEUES 160 /* rows of the table times levels, at most */
+#include "device.h"
 
 struct vit {
     vit_pack pack;
     vit_limits limits;
-    vit_device device;
+    const vit_device *device;
+    void *state;               /* the device's */
     int profile;
-    void *in_place;            /* the framebuffer that the device renders into; NULL: frames are read out */
     uint64_t frames;           /* rendered since vit_open */
-    uint32_t enqueued;         /* commands of the last frame, with profile */
-    uint32_t enqueued_pass[VIT_MAX_ENQUEUES];
-    cl_event events[VIT_MAX_ENQUEUES];
     double pass_ms[VIT_MAX_PASSES];
 };
 

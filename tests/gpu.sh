@@ -22,7 +22,7 @@ trap 'rm -rf "$work"; [ -z "${made_icd:-}" ] || rm -rf "$OCL_ICD_VENDORS"' EXIT
 "$player" --list-devices || exit 1
 device=$("$player" --list-devices | grep -i nvidia | head -1 | sed 's/[^0-9].*//')
 [ -n "$device" ] || { echo "gpu.sh: no NVIDIA device"; exit 1; }
-other=$("$player" --list-devices | grep -vi nvidia | head -1 | sed 's/[^0-9].*//')
+other=$("$player" --list-devices | grep -vi nvidia | head -1 | sed 's/ .*//')
 passed=0 failed=0
 compare() { # pack, options
     if out=$("$player" "$1" $2 --verify 2>&1); then

@@ -10,8 +10,9 @@ static inline void *read_buffer(const open_pack *p, vit_buffer b) {
     const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->limits);
     void *out = malloc(bytes + 1);
     assert_non_null(out);
-    assert_int_equal(clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL),
-                     0);
+    vit_text why = {""};
+    if (p->v->device->read(p->v->state, b, bytes, out, &why) != VIT_OK)
+        fail_msg("%s", why.text);
     return out;
 }
 

@@ -14,7 +14,7 @@ $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer
 $(B)/tests/golden/test_reference_runs.o: CFLAGS_ALL += $(if $(LIBS_COST),-DVIT_MPI=1)
 $(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
-$(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"'
+$(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"' -DVIT_LIBS='"$(LIBS_RUNTIME)"'
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
@@ -33,7 +33,20 @@ test: deps
 	@$(MAKE) $(SIDE_BY_SIDE) run-tests
 # Bad input under the address and undefined behaviour sanitizers.
 SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
-run-sanitized: $(SANITIZED)
+# The kernels as C, too: packs that hold each effect between them, baked by the release's baker.
+HOST_SCENES := build/release/scenes
+HOST_BAKE := build/release/vitrine-bake --quiet --device host --size 96x64 --frames 1 --photons 2000
+run-sanitized: $(SANITIZED) $(B)/vitrine-play
+	@$(MAKE) --no-print-directory config=release build/release/vitrine-bake $(HOST_SCENES)/atrium.obj
+	@mkdir -p $(B)/packs
+	@set -e; bake() { $(HOST_BAKE) $(HOST_SCENES)/$$1.cfg -o $(B)/packs/$$2.vit $$3; }; \
+	bake cornell list "--zones 0 --sample-bits 16"; \
+	bake cornell zones "--zones 2 --indirect-samples 4 --kernel flattened"; \
+	bake cornell raw "--estimate buckets --smoothing raw --normal-keys 1 --zones 0"; \
+	bake cornell sparse "--estimate buckets --indirect-samples 16 --tile 8 --bounce-sequence 1"; \
+	bake atrium atrium "--zones 0 --texture-filter trilinear"; \
+	for p in list zones raw sparse atrium; do for l in $(HOST_LANES); do echo "== host, $$l lanes, $$p"; \
+	  $(B)/vitrine-play --quiet $(B)/packs/$$p.vit --verify --device host --threads 3 --lanes $$l; done; done
 run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS)
 $(RUNS): run/%: %
 	@echo "== $*"; $*

@@ -28,7 +28,7 @@ static void catch_signals(void) {
 static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
     p->strict = o->strict;
     p->threads = o->threads;
-    p->device = o->device;
+    p->device = o->device_given ? o->device : vit_device_default();
     vit_status status = pipeline_read(o->input, &p->scene, why);
     if (status != VIT_OK)
         return status;

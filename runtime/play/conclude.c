@@ -13,7 +13,7 @@ static vit_status write_files(const player *p, vit_text *why) {
         status = work_budget_write(o->write_work_budget, &p->work, view, format, why);
     if (o->report_file == NULL || status != VIT_OK)
         return status;
-    if (vit_device_name(o->device, &device) == NULL)
+    if (vit_device_name(p->info.device, &device) == NULL)
         return play_fail(why, VIT_FAILED, "%s", device.text);
     report_json j = {.pack = o->pack,
                      .device = device.text,

@@ -32,8 +32,7 @@ static vit_status list_devices(vit_text *why) {
     uint32_t count = 0;
     for (const char *text; (text = vit_device_name(count, &name)) != NULL; count++)
         (void)printf("%u %s\n", count, text);
-    if (count == 0)
-        return play_fail(why, VIT_FAILED, "no OpenCL device (install a driver, PoCL for one: pocl-opencl-icd)");
+    (void)printf("host %s\n", vit_device_name(VIT_DEVICE_HOST, &name));
     return output_flush_stdout(why);
 }
 
@@ -205,6 +204,14 @@ static vit_status check_budgets(player *p, vit_text *why) {
     return status;
 }
 
+/* Nobody should wonder why it is slower than yesterday. */
+static uint32_t device_of(const play_options *o) {
+    uint32_t device = o->device_given ? o->device : vit_device_default();
+    if (!o->device_given && device == VIT_DEVICE_HOST && !o->quiet && !o->explain)
+        (void)fputs("vitrine-play: no OpenCL device (a driver makes one, PoCL for one): playing on the built-in device host\n", stderr);
+    return device;
+}
+
 static vit_status run_pack(player *p, vit_text *why) {
     const play_options *o = p->options;
     if (o->size != NULL)
@@ -214,7 +221,9 @@ static vit_status run_pack(player *p, vit_text *why) {
         return status;
     p->info = (vit_open_info){.pack = p->pack.bytes,
                               .pack_size = p->pack.size,
-                              .device = o->device,
+                              .device = device_of(o),
+                              .threads = o->threads,
+                              .host_isa = o->host_isa,
                               .lanes = o->lanes,
                               .group = o->group,
                               .format = o->format,

@@ -40,6 +40,22 @@ bool option_number(const char *text, const char *end, uint32_t *out) {
     return true;
 }
 
+vit_status option_set_device(play_options *o, const char *value, vit_text *why) {
+    o->device_given = true;
+    o->device = VIT_DEVICE_HOST;
+    if (strcmp(value, "host") == 0)
+        return VIT_OK;
+    if (!option_number(value, value + strlen(value), &o->device) || o->device == VIT_DEVICE_HOST)
+        return play_fail(why, VIT_USAGE, "--device takes a number of --list-devices or host, got '%s'", value);
+    return VIT_OK;
+}
+
+vit_status option_set_host_isa(play_options *o, const char *value, vit_text *why) {
+    (void)why; /* the library knows which there are */
+    o->host_isa = value;
+    return VIT_OK;
+}
+
 vit_status option_set_out(play_options *o, const char *value, vit_text *why) {
     const char *colon = strchr(value, ':');
     size_t length = colon != NULL ? (size_t)(colon - value) : strlen(value);

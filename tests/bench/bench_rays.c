@@ -26,9 +26,10 @@ typedef struct race {
 } race;
 
 static uint32_t device_threads(const player *p) {
+    const vit_opencl *d = p->v->state;
     cl_uint units = 0;
-    if (p->v->device.is_cpu &&
-        clGetDeviceInfo(p->v->device.id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL) == CL_SUCCESS)
+    if (d->is_cpu &&
+        clGetDeviceInfo(d->id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL) == CL_SUCCESS)
         return units;
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     return cores > 0 ? (uint32_t)cores : 1;

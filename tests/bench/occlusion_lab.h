@@ -38,7 +38,7 @@ static inline void lab_check(cl_int error, const char *call) {
 /* The rays may change until the lab is opened, and have one entry a view sample of `p`. */
 static inline occlusion_lab occlusion_open(player *p, const ray_planes *rays) {
     static const uint32_t scene[] = {B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels, B_bvh};
-    const vit_device *d = &p->v->device;
+    const vit_opencl *d = p->v->state;
     const char *sources[LAB_SOURCES];
     char options[1024];
     cl_int e;
@@ -60,7 +60,7 @@ static inline occlusion_lab occlusion_open(player *p, const ray_planes *rays) {
     lab_check(e, "clCreateBuffer");
     cl_uint at = 0;
     for (; at < sizeof scene / sizeof *scene; at++) {
-        const cl_mem *b = &p->v->device.buffers[scene[at]];
+        const cl_mem *b = &d->buffers[scene[at]];
         lab_check(clSetKernelArg(l.kernel, at, sizeof(cl_mem), *b ? b : NULL), "clSetKernelArg");
     }
     lab_check(clSetKernelArg(l.kernel, at, sizeof(cl_mem), &l.rays), "clSetKernelArg");
@@ -73,9 +73,10 @@ static inline double occlusion_run(occlusion_lab *l, player *p) {
     const vit_limits *limits = &p->v->limits;
     const size_t local = limits->group, items = p->v->pack.scene->samples / limits->lanes;
     const size_t global = (items + local - 1) / local * local;
+    const vit_opencl *d = p->v->state;
     cl_event event;
     cl_ulong begin, end;
-    lab_check(clEnqueueNDRangeKernel(p->v->device.queue, l->kernel, 1, NULL, &global, &local, 0, NULL, &event),
+    lab_check(clEnqueueNDRangeKernel(d->queue, l->kernel, 1, NULL, &global, &local, 0, NULL, &event),
               "bench_occlusion");
     lab_check(clWaitForEvents(1, &event), "clWaitForEvents");
     lab_check(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL), "profiling");
@@ -86,8 +87,9 @@ static inline double occlusion_run(occlusion_lab *l, player *p) {
 
 static inline uint32_t *occlusion_read(occlusion_lab *l, player *p) {
     const size_t n = p->v->pack.scene->samples;
+    const vit_opencl *d = p->v->state;
     uint32_t *out = bench_array(n, 4);
-    lab_check(clEnqueueReadBuffer(p->v->device.queue, l->occluded, CL_TRUE, 0, n * 4, out, 0, NULL, NULL),
+    lab_check(clEnqueueReadBuffer(d->queue, l->occluded, CL_TRUE, 0, n * 4, out, 0, NULL, NULL),
               "clEnqueueReadBuffer");
     return out;
 }

@@ -147,9 +147,9 @@ static inline vit_statistics player_stats(player *p) {
 static inline void *player_buffer(player *p, uint32_t buffer) {
     const size_t bytes = (size_t)vit_buffer_bytes(buffer, p->v->pack.scene, &p->v->limits);
     void *out = bench_array(bytes, 1);
-    if (clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[buffer], CL_TRUE, 0, bytes, out, 0, NULL, NULL) !=
-        CL_SUCCESS)
-        bench_fail("buffer %s cannot be read", vit_buffer_names[buffer]);
+    vit_text why;
+    if (p->v->device->read(p->v->state, (vit_buffer)buffer, bytes, out, &why) != VIT_OK)
+        bench_fail("%s", why.text);
     return out;
 }
 

@@ -77,7 +77,7 @@ int __wrap_open(const char *path, int flags, ...) {
     return __real_open64(path, flags, 0600);
 }
 
-/* What the library's objects may need from outside: OpenCL, memory and text in place, and what compilers put in. */
+/* What the library's objects may need from outside: OpenCL, threads, memory and text in place, arithmetic, and what compilers put in. */
 static const char *const allowed[] = {"memcpy",
                                       "memset",
                                       "memmove",
@@ -97,8 +97,18 @@ static const char *const allowed[] = {"memcpy",
                                       "_GLOBAL_OFFSET_TABLE_",
                                       "floor",
                                       "floorf",
-                                      "sqrtf"};
-static const char *const allowed_beginnings[] = {"cl", "__asan_", "__ubsan_", "__gcov_", "__llvm_"};
+                                      "sqrtf",
+                                      "fmaf",
+                                      "rintf",
+                                      "fegetenv",
+                                      "fesetenv",
+                                      "sched_getaffinity",
+                                      "__sched_cpucount",
+                                      "clock_gettime",
+                                      "__cpu_model",
+                                      "__popcountdi2",
+                                      "__tls_get_addr"};
+static const char *const allowed_beginnings[] = {"cl", "pthread_", "__asan_", "__ubsan_", "__gcov_", "__llvm_"};
 
 static int is_allowed(const char *name) {
     for (size_t i = 0; i < sizeof allowed / sizeof allowed[0]; i++)
@@ -184,6 +194,12 @@ static void nothing_is_allocated_opened_or_printed_from_open_to_close(void **sta
     assert_int_equal(calls_of_a_whole_life("dark", (vit_open_info){0}), 0);
 }
 
+static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {
+    (void)state;
+    assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){.device = VIT_DEVICE_HOST, .threads = 3}), 0);
+    assert_int_equal(calls_of_a_whole_life("room-buckets", (vit_open_info){.device = VIT_DEVICE_HOST, .profile = 1, .count_work = 1}), 0);
+}
+
 static void nothing_is_allocated_when_passes_are_timed_or_bounds_are_too_small(void **state) {
     (void)state;
     assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){.profile = 1}), 0);
@@ -206,6 +222,7 @@ int main(void) {
         cmocka_unit_test(the_librarys_objects_name_nothing_that_allocates_opens_or_prints),
         cmocka_unit_test(a_call_of_a_forbidden_function_is_counted),
         cmocka_unit_test(nothing_is_allocated_opened_or_printed_from_open_to_close),
+        cmocka_unit_test(the_device_host_takes_all_its_memory_from_the_caller),
         cmocka_unit_test(nothing_is_allocated_when_passes_are_timed_or_bounds_are_too_small),
         cmocka_unit_test(a_pack_is_refused_without_allocation),
     };

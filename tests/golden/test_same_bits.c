@@ -87,13 +87,36 @@ static const variant together[] = {
     {"POCL_MAX_PTHREAD_COUNT=2", "--lanes 1 --group 256"},
     {"POCL_DEVICES=pthread", "--lanes 8 --group 1"},
     {"POCL_DEVICES=basic", "--lanes 16 --group 32"},
+    {"", "--device host --threads 3"},
+    {"", "--device host --threads 1 --lanes 1"},
+    {"", "--device host --threads 2 --lanes 8 --host-isa baseline"},
+};
+
+/* The device host: each number of threads, lanes, set of instructions that this machine has. */
+static const variant on_host[] = {
+    {"", "--device host"},
+    {"", "--device host --threads 1 --lanes 1"},
+    {"", "--device host --threads 2 --lanes 8"},
+    {"", "--device host --threads 3 --lanes 16"},
+    {"", "--device host --threads 2 --lanes 1 --host-isa baseline"},
+    {"", "--device host --threads 1 --lanes 8 --host-isa baseline"},
+    {"", "--device host --threads 2 --lanes 16 --host-isa baseline"},
 };
 
 /* For what differs little from a pack that is played in all ways. */
 static const variant few[] = {
     {"POCL_MAX_PTHREAD_COUNT=1", ""},
     {"POCL_DEVICES=basic", "--lanes 1 --group 256"},
+    {"", "--device host --threads 1"},
+    {"", "--device host --threads 3 --lanes 1"},
 };
+
+static void the_device_host_gives_the_bits_of_opencl(void **state) {
+    (void)state;
+    assert_all_alike(test_pack("list"), "--verify --hash", on_host, COUNT(on_host));
+    assert_all_alike(test_pack("room"), "--trace", on_host, COUNT(on_host));
+    assert_all_alike(test_pack("zones-sparse-buckets"), "--trace", on_host, COUNT(on_host));
+}
 
 static void make_caches(void) {
     test_packs_begin();
@@ -175,7 +198,7 @@ static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
     static const char *const packs[] = {"list", "1x1", "17x1", "33x47", "sparse-17x1"};
     static const char *const formats[] = {"--verify --hash", "--verify --hash --format rgb565",
                                           "--verify --hash --format rgba32f"};
-    static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16"}};
+    static const variant lanes[] = {{"", "--lanes 1"}, {"", "--lanes 8"}, {"", "--lanes 16"}, {"", "--device host"}};
     for (size_t i = 0; i < COUNT(packs); i++)
         for (size_t f = 0; f < COUNT(formats); f++)
             assert_all_alike(test_pack(packs[i]), formats[f], lanes, COUNT(lanes));
@@ -184,7 +207,7 @@ static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
 static void views_of_the_methods_insides_are_the_same_at_every_width(void **state) {
     (void)state;
     static const char *const views[] = {"clusters", "photons", "heat"}; /* the others do no more than `final` */
-    static const variant lanes[] = {{"POCL_MAX_PTHREAD_COUNT=1", "--lanes 1"}};
+    static const variant lanes[] = {{"POCL_MAX_PTHREAD_COUNT=1", "--lanes 1"}, {"", "--device host"}};
     for (size_t i = 0; i < COUNT(views); i++) {
         char what[64];
         (void)snprintf(what, sizeof what, "--hash --view %s", views[i]);
@@ -195,6 +218,7 @@ static void views_of_the_methods_insides_are_the_same_at_every_width(void **stat
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_frame_hashes_the_same_however_it_is_played),
+        cmocka_unit_test(the_device_host_gives_the_bits_of_opencl),
         cmocka_unit_test(buckets_hash_the_same),
         cmocka_unit_test(raw_buckets_hash_the_same),
         cmocka_unit_test(flattened_photons_hash_the_same),

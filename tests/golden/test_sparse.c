@@ -5,7 +5,7 @@
  * samples without agreeing neighbours must be as the full estimate has them; the others are bounded by their mean error, and no
  * lit one may be dark. */
 #include "open_pack.h"
-#include "vit.h"
+#include "read_buffer.h"
 
 #include <math.h>
 
@@ -21,11 +21,7 @@ static void *buffer(open_pack *p, uint32_t b) {
     const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->limits);
     if (bytes == 0)
         return NULL;
-    void *out = malloc(bytes);
-    assert_non_null(out);
-    assert_int_equal(clEnqueueReadBuffer(p->v->device.queue, p->v->device.buffers[b], CL_TRUE, 0, bytes, out, 0, NULL, NULL),
-                     0);
-    return out;
+    return read_buffer(p, (vit_buffer)b);
 }
 
 static light light_of(const char *name) {

@@ -1,0 +1,79 @@
+/* The frame: reading VIT_PASSES from top to bottom is reading the renderer. The one list of passes: vit_passes (passes.c) and the
+ * host's calls of the kernels (host/kernels.c) are made from it.
+ *
+ * X(kernel, when, extent, repeat, what it writes, arguments in the order of the kernel's parameters...): see vit_pass. An argument is
+ * B(buffer) or V(value), as who includes this file defines them. */
+#ifndef VIT_PASS_TABLE_H
+#define VIT_PASS_TABLE_H
+
+#include "passes.h"
+
+#define W(name) ((uint64_t)1 << B_##name)
+#define ARGS_SURFACE B(scene), B(triangles), B(attributes), B(materials), B(textures), B(mips), B(texels)
+#define ARGS_RAYS ARGS_SURFACE, B(bvh)
+#define ARGS_WORK B(work), V(pass) /* last, in passes that count on the device */
+#define ARGS_ESTIMATE B(masks), B(prefix), B(list_first), B(list_count), B(list), B(photons)
+#define ARGS_SPARSE                                                                                                           \
+    B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(position), B(normal),      \
+    B(accept), B(inverse_area)
+
+#define VIT_PASSES(X)                                                                                                         \
+    X(visibility, ALWAYS, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance),                                                \
+      ARGS_RAYS, B(cameras), V(frame), B(hit_triangle), B(hit_distance), ARGS_WORK)                                           \
+    X(samples, ALWAYS, PER_SAMPLE, ONCE, W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area),       \
+      ARGS_SURFACE, B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(sides), B(cells), B(position), B(normal),       \
+      B(albedo), B(direct), B(accept), B(inverse_area), ARGS_WORK)                                                            \
+    X(direct_light, ON(LIGHTS), PER_SAMPLE, ONCE, W(direct),                                                                  \
+      ARGS_RAYS, B(lights), V(frame), B(hit_triangle), B(position), B(normal), B(albedo), B(direct), ARGS_WORK)               \
+    X(clear_masks, ON(PHOTONS), PER_MASK_WORD, ONCE, W(masks) | W(counters),                                                  \
+      B(scene), B(masks), B(counters))                                                                                        \
+    X(photon_paths, ON(TRACED), PER_PATH, ONCE, W(photons) | W(counters),                                                     \
+      ARGS_RAYS, B(lights), V(frame), B(sides), B(cells), B(photons), B(counters), ARGS_WORK)                                 \
+    X(cluster_keys, ON(PHOTONS), PER_RUN, ONCE, W(masks) | W(keys) | W(counters),                                             \
+      B(scene), B(cameras), V(frame), V(run), B(hit_triangle), B(position), B(normal), B(albedo), B(masks), B(keys),          \
+      B(counters))                                                                                                            \
+    X(number_nodes, ON(PHOTONS), ONE_GROUP, ONCE, W(prefix) | W(counters),                                                    \
+      B(scene), B(masks), B(prefix), B(counters))                                                                             \
+    X(make_nodes, ON(PHOTONS), PER_MASK_WORD, ONCE, W(node_first) | W(node_count),                                            \
+      B(scene), V(max_nodes), B(masks), B(prefix), B(node_first), B(node_count), B(bounds))                                   \
+    X(cluster_bounds, ON(PHOTONS), PER_RUN, ONCE, W(bounds) | W(counters),                                                    \
+      B(scene), V(max_nodes), V(run), B(keys), B(position), B(normal), B(accept), B(masks), B(prefix), B(bounds),             \
+      B(counters))                                                                                                            \
+    X(node_bounds, ON(PHOTONS), PER_LEVEL_NODE, UPWARD, W(bounds),                                                            \
+      B(scene), V(max_nodes), V(level), B(prefix), B(node_first), B(node_count), B(bounds), B(counters))                      \
+    X(splat_count, ON(PHOTONS), GROUP_PER_LEVEL_NODE, LISTED, W(list_count),                                                  \
+      B(scene), V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds),            \
+      B(list_first), B(list_count), B(list), B(chunk_count), B(counters), ARGS_WORK)                                          \
+    X(splat_place, ON(PHOTONS), ONE_GROUP, LISTED, W(list_first) | W(list_count) | W(counters),                               \
+      B(scene), V(max_nodes), V(max_list), V(level), V(chunks), B(prefix), B(list_first), B(list_count), B(chunk_count),      \
+      B(counters))                                                                                                            \
+    X(splat_write, ON(PHOTONS), GROUP_PER_LEVEL_NODE, LISTED, W(list),                                                        \
+      B(scene), V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds),            \
+      B(list_first), B(list_count), B(list), B(cursor), B(chunk_count), B(counters), ARGS_WORK)                               \
+    X(splat_buckets, ON(BUCKETS), GROUP_PER_LEVEL_NODE, LAST, W(buckets) | W(list_count) | W(counters),                       \
+      B(scene), V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds),            \
+      B(list_first), B(list_count), B(list), B(counters), B(buckets), ARGS_WORK)                                              \
+    X(estimate_list, ON(LIST) | ON_DENSE, PER_SAMPLE, ONCE, W(indirect),                                                      \
+      B(scene), V(max_nodes), ARGS_ESTIMATE, B(keys), B(position), B(normal), B(accept), B(inverse_area), B(indirect),        \
+      ARGS_WORK)                                                                                                              \
+    X(estimate_buckets, ON(BUCKETS) | ON_DENSE, PER_SAMPLE, ONCE, W(indirect),                                                \
+      B(scene), B(cameras), V(frame), V(max_nodes), B(masks), B(prefix), B(bounds), B(buckets), B(keys), B(position),         \
+      B(normal), B(accept), B(inverse_area), B(indirect), ARGS_WORK)                                                          \
+    X(estimate_sparse, ON(SPARSE), PER_COARSE, ONCE, W(coarse),                                                               \
+      ARGS_SPARSE, B(coarse), ARGS_WORK)                                                                                      \
+    X(interpolate, ON(SPARSE), PER_BLOCK, ONCE, W(indirect) | W(flags),                                                       \
+      B(scene), B(cameras), V(frame), B(keys), B(position), B(normal), B(accept), B(inverse_area), B(coarse),                 \
+      B(indirect), B(flags))                                                                                                  \
+    X(estimate_rest, ON(SPARSE), PER_REST, ONCE, W(indirect),                                                                 \
+      ARGS_SPARSE, B(flags), B(indirect), ARGS_WORK)                                                                          \
+    X(dots_clear, ON_DOTS, PER_PIXEL, ONCE, W(dots),                                                                          \
+      B(scene), B(dots))                                                                                                      \
+    X(photon_dots, ON_DOTS, PER_PHOTON, ONCE, W(dots),                                                                        \
+      B(scene), B(cameras), V(frame), B(photons), B(hit_distance), B(dots))                                                   \
+    X(resolve, ALWAYS, PER_SAMPLE, ONCE, W(framebuffer),                                                                      \
+      B(scene), B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(normal), B(albedo), B(direct), V(max_nodes),        \
+      B(indirect), B(keys), B(masks), B(prefix), B(list_count), B(dots), B(photons), B(framebuffer))                          \
+    X(account, ON(PHOTONS), ONE_GROUP, ONCE, W(counters),                                                                     \
+      B(counters))
+
+#endif

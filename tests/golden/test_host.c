@@ -1,0 +1,175 @@
+/* The device `host`: there without OpenCL, chosen by name, and undisturbed by what a program around it does.
+ *
+ * That its bits are those of OpenCL, pass by pass, is in test_same_bits.c. Here golden hashes, made by an OpenCL device, stand
+ * for them; "no OpenCL" is an ICD loader that finds no driver. Without one of its own effects, threads or floating-point
+ * environment a vit would take its neighbour's: two are played in turns, and one under a rounding mode that is not its own. */
+#include "open_pack.h"
+#include <fenv.h>
+
+#define NO_OPENCL "OCL_ICD_VENDORS=/nonexistent/ "
+
+static tool_run r;
+
+static void host_is_listed_with_and_without_opencl(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " --list-devices");
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.out, "\nhost Vitrine / "));
+    tool(&r, NO_OPENCL TOOL_PLAY " --list-devices");
+    tool_succeeds(&r);
+    assert_int_equal(strncmp(r.out, "host Vitrine / ", 15), 0);
+    assert_null(strstr(strchr(r.out, '\n') + 1, "\n"));
+}
+
+static void without_opencl_the_player_takes_host_and_says_so(void **state) {
+    (void)state;
+    tool(&r, NO_OPENCL TOOL_PLAY " %s --verify", test_pack("33x47"));
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.err, "built-in device host"));
+    tool(&r, NO_OPENCL TOOL_PLAY " %s --verify --quiet", test_pack("33x47"));
+    tool_succeeds(&r);
+    assert_string_equal(r.err, "");
+    tool(&r, NO_OPENCL TOOL_PLAY " %s --quiet --device 0", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_FAILED, "no OpenCL platform");
+}
+
+static void a_device_or_instruction_set_that_there_is_not_is_refused(void **state) {
+    (void)state;
+    tool(&r, TOOL_PLAY " %s --device hots", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "or host");
+    tool(&r, TOOL_PLAY " %s --device host --host-isa z80", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "baseline");
+    tool(&r, TOOL_PLAY " %s --device host --threads 0", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "--threads");
+}
+
+static void the_baker_makes_the_same_bytes_without_opencl(void **state) {
+    (void)state;
+    size_t size[2];
+    void *bytes[2] = {test_packs_load(test_pack("33x47"), &size[0])};
+    const size_t i = test_packs_find("33x47");
+    tool(&r, NO_OPENCL TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --threads 3 %s", test_packs[i].input,
+         test_packs[i].options);
+    tool_succeeds(&r);
+    bytes[1] = test_packs_load(TEST_PACKS "/host.vit", &size[1]);
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    tool(&r, TOOL_BAKE " %s --quiet --device hots -o " TEST_PACKS "/host.vit", test_packs[i].input);
+    tool_refuses(&r, "vitrine-bake", VIT_USAGE, "or host");
+    free(bytes[0]);
+    free(bytes[1]);
+}
+
+static vit_open_info on_host(vit_open_info how) {
+    how.device = VIT_DEVICE_HOST;
+    how.threads = 2;
+    return how;
+}
+
+static void assert_golden(open_pack *p, uint32_t index) {
+    assert_true(vit_golden(p->v, index) != 0);
+    assert_true(pack_frame_hash(p, index) == vit_golden(p->v, index));
+}
+
+static void two_packs_of_other_effects_are_played_in_turns(void **state) {
+    (void)state;
+    open_pack a, b;
+    pack_open(&a, "list", on_host((vit_open_info){.lanes = 8}));
+    pack_open(&b, "room-buckets", on_host((vit_open_info){.lanes = 8}));
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_golden(&a, i);
+        assert_golden(&b, i);
+    }
+    pack_close(&a);
+    pack_close(&b);
+}
+
+static void the_callers_rounding_mode_counts_for_nothing_and_stays(void **state) {
+    (void)state;
+    open_pack p;
+    pack_open(&p, "33x47", on_host((vit_open_info){0}));
+    assert_int_equal(fesetround(FE_UPWARD), 0);
+    pack_frame(&p, 1);
+    const int after = fegetround();
+    assert_int_equal(fesetround(FE_TONEAREST), 0);
+    assert_int_equal(after, FE_UPWARD);
+    assert_true(vit_hash(p.frame, p.need.frame_bytes) == vit_golden(p.v, 1));
+    pack_close(&p);
+}
+
+static void frames_go_where_the_caller_wants_them(void **state) {
+    (void)state;
+    static _Alignas(64) uint8_t own[64 * 64 * 4], wide[64 * 256];
+    open_pack p, plain;
+    pack_open(&plain, "33x47", on_host((vit_open_info){0}));
+    pack_open(&p, "33x47", on_host((vit_open_info){.framebuffer = own}));
+    assert_true(p.need.host_bytes < plain.need.host_bytes);
+    assert_vit_ok(&p, vit_frame(p.v, 0, own, p.stride, &p.why));
+    assert_true(vit_hash(own, p.need.frame_bytes) == vit_golden(p.v, 0));
+    assert_vit_ok(&p, vit_frame(p.v, 0, wide, 256, &p.why));
+    for (uint32_t y = 0; y < p.need.height; y++) {
+        assert_memory_equal(wide + y * 256, own + y * p.stride, p.stride);
+        assert_int_equal(wide[y * 256 + p.stride], 0);
+    }
+    pack_close(&p);
+    pack_close(&plain);
+}
+
+static void an_arena_without_room_for_the_buffers_is_refused(void **state) {
+    (void)state;
+    open_pack p;
+    vit *v = NULL;
+    pack_open(&p, "33x47", on_host((vit_open_info){0}));
+    assert_true(p.need.host_bytes > p.need.frame_bytes);
+    p.info.arena_size = p.need.host_bytes - 1;
+    vit_close(p.v);
+    p.v = NULL;
+    assert_int_equal(vit_open(&p.info, &v, &p.why), VIT_USAGE);
+    assert_null(v);
+    pack_close(&p);
+}
+
+/* Counts of frame 0. */
+static vit_statistics counted(const char *pack, vit_open_info how) {
+    open_pack p;
+    how.count_work = 1;
+    pack_open(&p, pack, how);
+    assert_golden(&p, 0);
+    const vit_statistics s = pack_stats(&p);
+    pack_close(&p);
+    return s;
+}
+
+static void work_counts_are_those_of_opencl(void **state) {
+    (void)state;
+    static const char *const packs[] = {"room-buckets", "zones-sparse"};
+    for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++) {
+        const vit_statistics cl = counted(packs[i], (vit_open_info){.lanes = 8}),
+                             host = counted(packs[i], on_host((vit_open_info){.lanes = 8}));
+        uint64_t all = 0;
+        assert_int_equal(cl.pass_count, host.pass_count);
+        for (uint32_t p = 0; p < cl.pass_count; p++)
+            for (uint32_t k = 0; k < cl.work_count; k++) {
+                if (cl.pass_work[p][k] != host.pass_work[p][k])
+                    fail_msg("%s: %s of %s", packs[i], cl.work_names[k], cl.pass_names[p]);
+                all += cl.pass_work[p][k];
+            }
+        assert_true(all > 0);
+        assert_true(host.pass_work[0][0] > 0); /* view rays of the first pass */
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(host_is_listed_with_and_without_opencl),
+        cmocka_unit_test(without_opencl_the_player_takes_host_and_says_so),
+        cmocka_unit_test(a_device_or_instruction_set_that_there_is_not_is_refused),
+        cmocka_unit_test(the_baker_makes_the_same_bytes_without_opencl),
+        cmocka_unit_test(two_packs_of_other_effects_are_played_in_turns),
+        cmocka_unit_test(the_callers_rounding_mode_counts_for_nothing_and_stays),
+        cmocka_unit_test(frames_go_where_the_caller_wants_them),
+        cmocka_unit_test(an_arena_without_room_for_the_buffers_is_refused),
+        cmocka_unit_test(work_counts_are_those_of_opencl),
+    };
+    return cmocka_run_group_tests_name("host", tests, NULL, NULL);
+}
