@@ -33,12 +33,15 @@ static shape triangle_shape(const float *a, const float *b, const float *c) {
     return square < FLT_MIN ? SHAPE_FLAT : SHAPE_GOOD;
 }
 
-static void place_vertices(instance *in) {
+static void place_vertices(importer *im, instance *in) {
     const struct aiMesh *mesh = in->mesh;
     for (size_t i = 0; i < mesh->mNumVertices; i++) {
         const struct aiVector3D *v = &mesh->mVertices[i];
         for (size_t k = 0; k < 3; k++) {
             const double *row = in->world + 4 * k;
+            const double far =
+                fmax(fmax(fabs(row[0] * (double)v->x), fabs(row[1] * (double)v->y)), fabs(row[2] * (double)v->z));
+            im->m->step = isfinite(far) ? fmax(im->m->step, far * 0x1p-23) : im->m->step;
             in->position[3 * i + k] = (float)(row[0] * (double)v->x + row[1] * (double)v->y + row[2] * (double)v->z + row[3]);
         }
         in->vertex[i] = VIT_NONE;
@@ -194,7 +197,7 @@ static bool add_instance(importer *im, instance *in) {
     float tint[3];
     material_use *use;
     uint32_t material;
-    place_vertices(in);
+    place_vertices(im, in);
     sift_faces(im, in);
     if (in->triangles == 0)
         return true;

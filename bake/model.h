@@ -50,6 +50,7 @@ typedef struct model {
     model_light *lights;
     int light_count;
     double lo[3], hi[3];       /* box of the vertices in use */
+    double step;               /* m between neighbouring floats where the files' vertices are farthest from their origin */
     uint64_t degenerate;       /* triangles dropped for zero area */
     uint64_t not_finite;       /* triangles dropped for NaN or infinite positions */
     uint64_t not_triangles;    /* points and lines dropped */

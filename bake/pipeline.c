@@ -2,9 +2,13 @@
 #include "pipeline.h"
 #include "bounds.h"
 #include "photons.h"
+#include "scene_move.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define COARSE 0x1p-16 /* of the scene's size: coarser floats in its files are worth a warning */
 
 static vit_status out_of_memory(vit_text *why) {
     snprintf(why->text, sizeof why->text, "out of memory");
@@ -36,9 +40,32 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
     return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, g, p->threads, step, p->progress, r, why);
 }
 
+/* Imports the meshes; if they lie far from the origin, moves the scene there and imports them again. */
+static vit_status import(pipeline *p, vit_text *why) {
+    double origin[3];
+    vit_status status = model_import(&p->scene, p->strict, warn, p->progress, &p->model, why);
+    if (status == VIT_OK && scene_is_far(&p->model, origin)) {
+        progress_line(p->progress, false, "the scene lies far from the origin: moved by (%g, %g, %g)", -origin[0], -origin[1],
+                      -origin[2]);
+        scene_move(&p->scene, origin);
+        model_free(&p->model);
+        status = model_import(&p->scene, p->strict, NULL, NULL, &p->model, why);
+    }
+    if (status != VIT_OK)
+        return status;
+    double size = 0.0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, p->model.hi[k] - p->model.lo[k]);
+    if (p->model.step > COARSE * size)
+        progress_line(p->progress, true,
+                      "warning: positions in the mesh files are %.2g m apart, 1 / %.0f of the scene: numbers far from 0",
+                      p->model.step, size / p->model.step);
+    return VIT_OK;
+}
+
 vit_status pipeline_load(pipeline *p, vit_text *why) {
     progress_stage(p->progress, "import");
-    vit_status status = model_import(&p->scene, p->strict, warn, p->progress, &p->model, why);
+    vit_status status = import(p, why);
     if (status == VIT_OK)
         status = tracks_evaluate(&p->scene, &p->model, &p->tracks, why);
     if (status != VIT_OK)

@@ -1,5 +1,6 @@
 /* A scene made by a test, baked and played by the real programs, its indirect light read back as linear floats. All files lie
- * in a folder of the test's own. Programs run as from a shell, so what is tested is what a user gets. */
+ * in a folder of the test's own. Programs run as from a shell, so what is tested is what a user gets; on the device `host`, which has
+ * the bits of all others (test_same_bits.c) and compiles nothing. */
 #ifndef VIT_TESTS_SCENE_LAB_H
 #define VIT_TESTS_SCENE_LAB_H
 
@@ -94,10 +95,10 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
 static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
-    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s",
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet --device host %s",
                    scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
-    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet", pack, raw);
+    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet --device host", pack, raw);
     scene_lab_run(l, "vitrine-play", line);
     struct stat size;
     assert_int_equal(stat(raw, &size), 0);
