@@ -266,11 +266,11 @@ static void the_bucket_estimate_keeps_all_light_in_a_box(void **state) {
 }
 
 static void the_list_estimate_is_right_everywhere_in_a_sphere(void **state) {
-    assert_true(sphere_deviation(*state, "--photons 131072 --radius 0.1") < LIST_WITHIN);
+    assert_true(sphere_deviation(*state, "--photons 65536 --radius 0.1") < LIST_WITHIN);
 }
 
 static void the_bucket_estimate_is_right_everywhere_in_a_sphere(void **state) {
-    assert_true(sphere_deviation(*state, "--photons 131072 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
+    assert_true(sphere_deviation(*state, "--photons 65536 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
 }
 
 /* The source's buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
@@ -280,7 +280,7 @@ static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state)
     (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --kernel flattened");
 }
 
-#define STRIPS "--photons 131072 --radius 0.25 "
+#define STRIPS "--photons 65536 --radius 0.25 "
 #define ALL_AREAS "--zones 1 --effective-area 1"
 static bool agree(strips a, strips b, double middle, double edges) {
     return fabs(a.middle / b.middle - 1) < middle && fabs(a.edges / b.edges - 1) < edges;
@@ -288,8 +288,8 @@ static bool agree(strips a, strips b, double middle, double edges) {
 
 /* What plain estimates lose at edges goes with the radius, so two radii tell what is there without loss. */
 static strips true_strips(scene_lab *l) {
-    const strips wide = box_strips(l, "--photons 524288 --radius 0.1 --zones 0 --effective-area 0", 0.25);
-    const strips narrow = box_strips(l, "--photons 524288 --radius 0.05 --zones 0 --effective-area 0", 0.25);
+    const strips wide = box_strips(l, "--photons 262144 --radius 0.1 --zones 0 --effective-area 0", 0.25);
+    const strips narrow = box_strips(l, "--photons 262144 --radius 0.05 --zones 0 --effective-area 0", 0.25);
     return (strips){2 * narrow.middle - wide.middle, 2 * narrow.edges - wide.edges};
 }
 
