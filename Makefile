@@ -58,7 +58,7 @@ HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
 # Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
 # are not looked at, and records are read as other types.
 HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -fno-math-errno \
-               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-O3 -g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow) -I. -I$(B) $(CFLAGS)
+               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-O3 -g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
