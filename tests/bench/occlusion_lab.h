@@ -3,6 +3,7 @@
 #ifndef VIT_BENCH_OCCLUSION_LAB_H
 #define VIT_BENCH_OCCLUSION_LAB_H
 
+#include "device_opencl.h"
 #include "embree_packets.h"
 #include "kernel_sources.h"
 #include "variant.h"
