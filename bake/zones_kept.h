@@ -5,7 +5,7 @@
 
 #include "zones.h"
 
-#define ZONES_KEPT 6 /* at most; the one asked for longest ago goes first */
+#define ZONES_KEPT 16 /* at most; the one asked for longest ago goes first */
 
 typedef struct zones_kept_one {
     float radius, flatten;
