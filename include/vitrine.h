@@ -170,6 +170,22 @@ uint64_t vit_hash(const void *data, size_t bytes);
 /* Reads the counters back: not for the frame loop. */
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why);
 
+/* What went wrong in a frame without ending the program, or ended it. */
+typedef struct vit_fault {
+    const char *level;         /* "warning": the frame was shown; "error": it was not */
+    const char *code;          /* a word */
+    const char *pass;          /* that noticed it; NULL: none */
+    const char *meaning;       /* one line */
+    uint32_t frame;            /* index */
+    uint64_t count;            /* how many of what the meaning says */
+} vit_fault;
+
+#define VIT_MAX_FAULTS 64
+
+/* The latest faults since vit_open, those of the frames first, then those of the device; not for the frame loop. *lost: 1 if older
+ * ones were forgotten. VIT_FAILED: the device cannot be asked any more; `out` then holds what the host knows. */
+vit_status vit_faults(vit *v, vit_fault out[VIT_MAX_FAULTS], uint32_t *count, int *lost, vit_text *why);
+
 /* Renders frame `index` and calls `pass` after each pass with a hash of what the pass wrote. For finding the pass in which
  * two devices part; slow. `scratch` holds the largest buffer (vit_requirements.buffers). */
 typedef void vit_trace_fn(void *user, const char *pass, uint64_t hash);

@@ -211,13 +211,30 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
 #endif
 
 #if VIT_WITH(PHOTONS)
-/* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest). */
-kernel void account(global uint *counters)
+/* Puts a fault of the frame behind those before it; the oldest makes room. */
+static inline void note_fault(global uint *faults, uint frame, uint code, uint count)
+{
+    uint noted = faults[0], at = 1 + 3 * (noted % VIT_FAULT_RING);
+    if (count == 0)
+        return;
+    faults[at] = frame;
+    faults[at + 1] = code;
+    faults[at + 2] = count;
+    /* beyond 2^32 - 1 the ring turns on: only that some were lost is told */
+    faults[0] = noted + 1 != 0 ? noted + 1 : VIT_FAULT_RING * 2;
+}
+
+/* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest), and notes faults. */
+kernel void account(global uint *counters, uint frame, global uint *faults)
 {
     for (uint i = (uint)get_local_id(0); i < VIT_COUNTER_COUNT; i += (uint)get_local_size(0)) {
         uint total = counters[VIT_COUNTER_COUNT + i];
         counters[VIT_COUNTER_COUNT + i] =
             i == VIT_COUNTER_dropped_samples || i == VIT_COUNTER_dropped_entries ? add_sat(total, counters[i]) : max(total, counters[i]);
+    }
+    if (get_local_id(0) == 0) {
+        note_fault(faults, frame, VIT_FAULT_samples_dropped, counters[VIT_COUNTER_dropped_samples]);
+        note_fault(faults, frame, VIT_FAULT_entries_dropped, counters[VIT_COUNTER_dropped_entries]);
     }
 }
 #endif

@@ -22,6 +22,8 @@ static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_
                 if (!vit_pass_called(row, &v->limits) || !vit_pass_at_level(&vit_passes[row], s, &v->limits, level))
                     continue;
                 vit_status status = v->device->run(v->state, row, level, frame, why);
+                if (status != VIT_OK)
+                    vit_note_fault(v, row, frame);
                 if (status == VIT_OK && after)
                     status = after(v, row, level, user, why);
                 if (status != VIT_OK)
@@ -47,8 +49,8 @@ vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, v
     }
     if (status == VIT_OK)
         status = walk(v, index, NULL, NULL, why);
-    if (status == VIT_OK)
-        status = v->device->show(v->state, framebuffer, stride, why);
+    if (status == VIT_OK && (status = v->device->show(v->state, framebuffer, stride, why)) != VIT_OK)
+        vit_note_fault(v, VIT_MAX_PASSES, index);
     if (v->profile)
         v->device->times(v->state, v->pass_ms);
     if (status == VIT_OK)

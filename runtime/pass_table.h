@@ -73,7 +73,7 @@
     X(resolve, ALWAYS, PER_SAMPLE, ONCE, W(framebuffer),                                                                      \
       B(scene), B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(normal), B(albedo), B(direct), V(max_nodes),        \
       B(indirect), B(keys), B(masks), B(prefix), B(list_count), B(dots), B(photons), B(framebuffer))                          \
-    X(account, ON(PHOTONS), ONE_GROUP, ONCE, W(counters),                                                                     \
-      B(counters))
+    X(account, ON(PHOTONS), ONE_GROUP, ONCE, W(counters) | W(faults),                                                         \
+      B(counters), V(frame), B(faults))
 
 #endif

@@ -74,6 +74,7 @@ typedef struct vit_limits {
     X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
     X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
     X(counters, ALWAYS, NONE, 2 * VIT_COUNTER_COUNT * 4)                                                                         \
+    X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                            \
     X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
     X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
 

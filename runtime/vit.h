@@ -4,6 +4,13 @@
 
 #include "device.h"
 
+#define VIT_HOST_FAULTS 16 /* kept */
+
+/* A fault that the host noticed: a call of the device in this pass and frame failed. */
+typedef struct vit_host_fault {
+    uint32_t pass, frame; /* pass VIT_MAX_PASSES: none */
+} vit_host_fault;
+
 struct vit {
     vit_pack pack;
     vit_limits limits;
@@ -12,6 +19,10 @@ struct vit {
     int profile;
     uint64_t frames;           /* rendered since vit_open */
     double pass_ms[VIT_MAX_PASSES];
+    vit_host_fault faults[VIT_HOST_FAULTS]; /* a ring */
+    uint64_t noted;            /* faults put into it */
 };
+
+void vit_note_fault(vit *v, uint32_t pass, uint32_t frame);
 
 #endif

@@ -174,6 +174,8 @@ static vit_status play(player *p, vit_text *why) {
     }
     if (status == VIT_OK)
         status = vit_stats(p->v, &p->last, why);
+    if (p->v)
+        report_faults(p->v, stderr);
     vit_close(p->v);
     return status;
 }

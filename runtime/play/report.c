@@ -130,6 +130,19 @@ void report_dropped(const vit_statistics *s, FILE *to) {
                   s->dropped_samples, s->dropped_entries, s->max_nodes, s->max_list);
 }
 
+void report_faults(vit *v, FILE *to) {
+    vit_fault f[VIT_MAX_FAULTS];
+    uint32_t count;
+    int lost;
+    vit_text why;
+    (void)vit_faults(v, f, &count, &lost, &why); /* the host's own are there in any case */
+    if (lost)
+        (void)fprintf(to, "vitrine-play: faults before these are not kept\n");
+    for (uint32_t i = 0; i < count; i++)
+        (void)fprintf(to, "vitrine-play: %s: frame %u%s%s: %s (%s, %" PRIu64 ")\n", f[i].level, f[i].frame, f[i].pass ? ", " : "",
+                      f[i].pass ? f[i].pass : "", f[i].meaning, f[i].code, f[i].count);
+}
+
 static void print_effects(uint32_t effects, FILE *to) {
     static const struct {
         uint32_t bit;

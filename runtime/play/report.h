@@ -41,6 +41,8 @@ void report_print(const report *r, const vit_requirements *need, const vit_stati
 void report_summary(const report *r, const char *end, FILE *to);
 /* One line if a bound dropped anything, else nothing. */
 void report_dropped(const vit_statistics *s, FILE *to);
+/* One line a fault of the log, if there are any. */
+void report_faults(vit *v, FILE *to);
 
 /* --explain. `file` names the pack, `pack_bytes` is its size. */
 void report_explain(const char *file, size_t pack_bytes, const vit_requirements *need, FILE *to);
