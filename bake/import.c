@@ -138,7 +138,7 @@ static bool add_file(importer *im, const scene_mesh *mesh) {
         return import_fail(im, "cannot be read");
     if (!S_ISREG(st.st_mode))
         return import_fail(im, "is not a file");
-    if (!import_check_ply(im))
+    if (!import_check_ply(im) || !import_probe(im, (size_t)st.st_size))
         return false;
     /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
     im->ai = aiImportFile(mesh->file, 0);

@@ -56,6 +56,10 @@ bool import_has_suffix(const char *file, const char *suffix); /* ".PLY" is ".ply
  * them. Every other file passes. */
 bool import_check_ply(importer *im);
 
+/* import_probe.c: has a child process read the file of `size` bytes first. Assimp ends the process on some malformed files, by an
+ * assertion or a bad access, and does not come back from others: those are refused. Reading twice is a small part of a bake. */
+bool import_probe(importer *im, size_t size);
+
 /* import_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted. */
 bool import_triangulate(importer *im);
 
