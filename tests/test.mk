@@ -38,6 +38,12 @@ run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) 
 $(RUNS): run/%: %
 	@echo "== $*"; $*
 
+# The same test for hours' worth of frames.
+SOAK_FRAMES ?= 20000
+soak: deps
+	@$(MAKE) $(SIDE_BY_SIDE) $(B)/tests/golden/test_soak $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	VITRINE_SOAK_FRAMES=$(SOAK_FRAMES) $(B)/tests/golden/test_soak
+
 bench: deps
 	@$(MAKE) --no-print-directory run-bench
 run-bench: $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE) $(BENCH_PROGRAMS)
