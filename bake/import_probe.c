@@ -19,10 +19,18 @@ static void be_silent(void) {
     }
 }
 
+/* A handler of our process's must not go on in the child. */
+static void die_by_signals(void) {
+    static const int signals[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGXCPU, SIGINT, SIGTERM};
+    for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
+        (void)signal(signals[i], SIG_DFL);
+}
+
 __attribute__((noreturn)) static void read_and_leave(importer *im, size_t size) {
     const rlim_t seconds = LEAST_SECONDS + SECONDS_A_MIB * (size >> 20);
     const struct rlimit time = {seconds, seconds + 1}, none = {0, 0};
     be_silent();
+    die_by_signals();
     (void)setrlimit(RLIMIT_CPU, &time);
     (void)setrlimit(RLIMIT_CORE, &none);
     im->ai = aiImportFile(im->file, 0);
