@@ -1,5 +1,5 @@
 # Vitrine. `make demo` and `make test` do everything on a fresh machine; `make help` lists the rest.
-#   config=release|debug|sanitize   (default release; each builds into build/$(config))
+#   config=release|debug|sanitize|fuzz   (default release; each builds into build/$(config))
 config ?= release
 B := build/$(config)
 CC ?= cc
@@ -14,8 +14,11 @@ else ifeq ($(config),debug)
 OPT := -O0 -g
 else ifeq ($(config),sanitize)
 OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+else ifeq ($(config),fuzz)
+CC := clang
+OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else
-$(error config must be release, debug or sanitize, got '$(config)')
+$(error config must be release, debug, sanitize or fuzz, got '$(config)')
 endif
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
@@ -44,7 +47,7 @@ LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
 .DELETE_ON_ERROR:
-.PHONY: all tools help deps demo run-demo cost run-cost test bench clean install format
+.PHONY: all tools help deps demo run-demo cost run-cost test soak bench clean install format
 all: deps
 	@$(MAKE) $(SIDE_BY_SIDE) tools
 tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
@@ -93,6 +96,7 @@ $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@
 
 include tests/test.mk
+include tests/fuzz.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
@@ -129,9 +133,11 @@ help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
 	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
+	@echo "make fuzz     bad packs, scenes and meshes under sanitizers (clang): FUZZ_SECONDS=$(FUZZ_SECONDS) each of FUZZ=\"$(FUZZ)\""
+	@echo "make soak     plays a small pack for SOAK_FRAMES=$(SOAK_FRAMES) frames: same bits, same memory"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
-	@echo "make deps | all | clean | format     config=release|debug|sanitize"
+	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz"
 
 clean:
 	rm -rf build

@@ -32,7 +32,7 @@ test: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
 	@$(MAKE) $(SIDE_BY_SIDE) run-tests
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
+SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene) run/$(B)/tests/fuzz/test_fuzz_corpus
 run-sanitized: $(SANITIZED)
 run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS)
 $(RUNS): run/%: %
