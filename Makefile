@@ -1,5 +1,5 @@
 # Vitrine. `make demo` and `make test` do everything on a fresh machine; `make help` lists the rest.
-#   config=release|debug|sanitize   (default release; each builds into build/$(config))
+#   config=release|debug|sanitize|fuzz   (default release; each builds into build/$(config))
 #   OPENCL=0                        without OpenCL: the built-in device `host` alone
 config ?= release
 OPENCL ?= 1
@@ -16,8 +16,11 @@ else ifeq ($(config),debug)
 OPT := -O0 -g
 else ifeq ($(config),sanitize)
 OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+else ifeq ($(config),fuzz)
+CC := clang
+OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else
-$(error config must be release, debug or sanitize, got '$(config)')
+$(error config must be release, debug, sanitize or fuzz, got '$(config)')
 endif
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
@@ -50,8 +53,8 @@ HOST_LANES := 1 8 16
 HOST_ISAS := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine)),avx512 avx2) baseline
 HOST_FLAGS_avx2 := -mavx2 -mfma
 HOST_FLAGS_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mprefer-vector-width=512
-ifeq ($(config),sanitize)
-HOST_LANES := 1 8
+ifneq ($(filter sanitize fuzz,$(config)),)
+HOST_LANES := 1 $(if $(filter sanitize,$(config)),8)
 HOST_ISAS := baseline
 endif
 HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
@@ -62,7 +65,7 @@ HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-comp
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
-.PHONY: all tools help deps demo run-demo cost run-cost test bench clean install format
+.PHONY: all tools help deps demo run-demo cost run-cost test soak bench clean install format
 all: deps
 	@$(MAKE) $(SIDE_BY_SIDE) tools
 tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
@@ -123,6 +126,7 @@ $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@
 
 include tests/test.mk
+include tests/fuzz.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
@@ -159,9 +163,11 @@ help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
 	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
+	@echo "make fuzz     bad packs, scenes and meshes under sanitizers (clang): FUZZ_SECONDS=$(FUZZ_SECONDS) each of FUZZ=\"$(FUZZ)\""
+	@echo "make soak     plays a small pack for SOAK_FRAMES=$(SOAK_FRAMES) frames: same bits, same memory"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
-	@echo "make deps | all | clean | format     config=release|debug|sanitize"
+	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz"
 
 clean:
 	rm -rf build

@@ -1,6 +1,5 @@
 #include "importer.h"
 #include <assimp/cimport.h>
-#include <assimp/postprocess.h>
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -96,6 +95,19 @@ bool import_has_suffix(const char *file, const char *suffix) {
     return n >= k && !strcasecmp(file + n - k, suffix);
 }
 
+/* In one line why nothing is left, if that is all there was to read. */
+static bool refuse_empty(importer *im) {
+    if (im->not_finite)
+        return import_fail(im, "has no triangle with finite positions");
+    if (im->bad_index)
+        return import_fail(im, "has no triangle whose indices are in range");
+    if (im->bad_polygon)
+        return import_fail(im, "has no triangle, and no polygon of at most 1024 corners whose indices are in range");
+    if (im->clear)
+        return import_fail(im, "has no triangle that is not transparent: transparency is not simulated");
+    return import_fail(im, "has no triangle");
+}
+
 static bool add_scene(importer *im, const scene_mesh *mesh) {
     const uint32_t before = im->m->triangles;
     if (!im->ai->mRootNode)
@@ -103,15 +115,18 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     if (!add_node(im, im->ai->mRootNode, mesh->transform, 0))
         return false;
     im->m->not_finite += im->not_finite;
+    if (im->m->triangles == before && im->s->mesh_count == 1)
+        return refuse_empty(im);
     if (im->not_finite)
         import_warn(im, "%llu triangles with positions that are not finite dropped", (unsigned long long)im->not_finite);
     if (im->bad_index)
         import_warn(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index);
+    if (im->bad_polygon)
+        import_warn(im, "%llu polygons with an index out of range or more than 1024 corners dropped",
+                    (unsigned long long)im->bad_polygon);
     if (im->clear)
         import_warn(im, "%llu triangles of transparent materials are left as holes: transparency is not simulated",
                     (unsigned long long)im->clear);
-    if (im->m->triangles == before && im->s->mesh_count == 1)
-        return import_fail(im, "has no triangle");
     if (im->m->triangles == before)
         import_warn(im, "has no triangle");
     return true;
@@ -123,15 +138,15 @@ static bool add_file(importer *im, const scene_mesh *mesh) {
         return import_fail(im, "cannot be read");
     if (!S_ISREG(st.st_mode))
         return import_fail(im, "is not a file");
-    if (!import_check_ply(im))
+    if (!import_check_ply(im) || !import_probe(im, (size_t)st.st_size))
         return false;
-    /* Polygons become triangles; everything else is done here, so that it is the same for all releases of Assimp. */
-    im->ai = aiImportFile(mesh->file, aiProcess_Triangulate);
+    /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
+    im->ai = aiImportFile(mesh->file, 0);
     if (!im->ai) {
         const char *text = aiGetErrorString();
         return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
     }
-    const bool fine = add_scene(im, mesh);
+    const bool fine = import_triangulate(im) && add_scene(im, mesh);
     aiReleaseImport(im->ai);
     return fine;
 }
@@ -153,7 +168,7 @@ static void next_file(importer *im, const char *file) {
     free(im->uses);
     im->uses = NULL;
     im->use_count = im->use_room = 0;
-    im->bad_index = im->not_finite = im->clear = 0;
+    im->bad_index = im->not_finite = im->clear = im->bad_polygon = 0;
     im->warned_colors = false;
     im->ai = NULL;
     im->file = file;

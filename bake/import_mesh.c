@@ -53,6 +53,8 @@ static void sift_faces(importer *im, instance *in) {
     const struct aiMesh *mesh = in->mesh;
     for (size_t i = 0; i < mesh->mNumFaces; i++) {
         const struct aiFace *face = &mesh->mFaces[i];
+        if (face->mNumIndices == 0) /* emptied by import_triangulate() */
+            continue;
         if (face->mNumIndices != 3) {
             im->m->not_triangles++;
             continue;

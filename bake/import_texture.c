@@ -7,6 +7,9 @@
 #include <sys/stat.h>
 
 enum { MAX_EDGE = 16384, MAX_BYTES = 1 << 30 };
+/* Texels that a byte of an image file can stand for: deflate's 1032 to 1, a bit a texel. A file that claims more is cut short, and the
+ * decoder would fill gigabytes for it. */
+#define TEXELS_A_BYTE (8 * 1032)
 #define MAX_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
 
 /* A missing or broken texture: an error if strict, else a warning and the plain colour. */
@@ -86,6 +89,8 @@ static const char *decode(const uint8_t *bytes, int size, model_image *out) {
         return "is not an image that can be read (PNG, JPEG, TGA, BMP)";
     if (out->width < 1 || out->height < 1 || out->width > MAX_EDGE || out->height > MAX_EDGE)
         return "is larger than 16384 pixels";
+    if ((uint64_t)out->width * (uint64_t)out->height > (uint64_t)size * TEXELS_A_BYTE)
+        return "is broken";
     out->rgba = stbi_load_from_memory(bytes, size, &out->width, &out->height, &channels, 4);
     return out->rgba ? NULL : "is broken";
 }

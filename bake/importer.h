@@ -24,6 +24,7 @@ typedef struct importer {
     size_t vertex_room, triangle_room, material_room, image_room;
     uint64_t texels;           /* of all images so far */
     uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
+    uint64_t bad_polygon;                  /* polygons dropped for an index or too many corners */
     bool warned_colors;
 } importer;
 
@@ -54,6 +55,13 @@ bool import_has_suffix(const char *file, const char *suffix); /* ".PLY" is ".ply
 /* import_ply.c: refuses a PLY file whose header has no end or lines of no known kind: Assimp's reader never comes back from
  * them. Every other file passes. */
 bool import_check_ply(importer *im);
+
+/* import_probe.c: has a child process read the file of `size` bytes first. Assimp ends the process on some malformed files, by an
+ * assertion or a bad access, and does not come back from others: those are refused. Reading twice is a small part of a bake. */
+bool import_probe(importer *im, size_t size);
+
+/* import_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted. */
+bool import_triangulate(importer *im);
 
 /* import_material.c: the use of material `ai_index` with vertex colour `tint`; false: out of memory.
  * The pointer is good until the next call. */

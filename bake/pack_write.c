@@ -1,6 +1,7 @@
 /* pack_write.c: lays the sections out as one file image, and puts that image under its name whole or not at all. */
 #include "pack_write.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -100,7 +101,54 @@ void pack_abandon(void) {
         unlink(temporary.path); /* async-signal-safe, as POSIX lists it */
 }
 
-/* Creates "PATH.tmp-PID-N" with the least free N; never opens a file that is there. Returns -1 and errno. */
+/* Whoever writes a temporary file holds a lock on it: a file without one was left behind by a killed process. False as well
+ * where there are no locks; nothing is then ever removed. */
+static bool lock(int file) {
+    const struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    return fcntl(file, F_SETLK, &whole) == 0;
+}
+
+/* "NAME.tmp-PID-N". */
+static bool is_temporary_of(const char *name, const char *entry) {
+    const size_t length = strlen(name);
+    if (strncmp(entry, name, length) != 0 || strncmp(entry + length, ".tmp-", 5) != 0)
+        return false;
+    const char *pid = entry + length + 5, *n = pid + strspn(pid, "0123456789");
+    return n > pid && *n == '-' && n[1] && n[1 + strspn(n + 1, "0123456789")] == '\0';
+}
+
+static void folder_of(const char *path, char folder[PATH_MAX]) {
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+}
+
+/* Removes what killed processes have left of `path`. */
+static void remove_left_behind(const char *path) {
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    folder_of(path, folder);
+    DIR *d = opendir(folder);
+    for (struct dirent *e = d ? readdir(d) : NULL; e; e = readdir(d)) {
+        if (!is_temporary_of(slash ? slash + 1 : path, e->d_name))
+            continue;
+        const int file = openat(dirfd(d), e->d_name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (file >= 0 && lock(file))
+            unlinkat(dirfd(d), e->d_name, 0);
+        if (file >= 0)
+            close(file);
+    }
+    if (d)
+        closedir(d);
+}
+
+/* Locks a new file, unless another process has taken it for left behind in between. */
+static bool claim(int file) {
+    struct stat there;
+    (void)lock(file);
+    return fstat(file, &there) == 0 && there.st_nlink > 0;
+}
+
+/* Creates and locks "PATH.tmp-PID-N" with the least free N; never opens a file that is there. Returns -1 and errno. */
 static int create_temporary(const char *path) {
     for (int n = 0; n < 100; n++) {
         const int length = snprintf(temporary.path, sizeof temporary.path, "%s.tmp-%ld-%d", path, (long)getpid(), n);
@@ -110,10 +158,12 @@ static int create_temporary(const char *path) {
         }
         temporary.armed = 1; /* before open: a signal between the two must not leave the file behind */
         const int file = open(temporary.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0)
+        if (file >= 0 && claim(file))
             return file;
         temporary.armed = 0;
-        if (errno != EEXIST && errno != EINTR)
+        if (file >= 0)
+            close(file);
+        else if (errno != EEXIST && errno != EINTR)
             return -1;
     }
     return -1;
@@ -136,10 +186,8 @@ static bool write_all(int file, const unsigned char *bytes, size_t size) {
 /* The new name lasts over a power cut only when the folder is on the disk as well. A folder that cannot be opened for
  * reading, or a file system without the notion (EINVAL), does not make the pack bad. */
 static bool sync_folder(const char *path) {
-    char folder[PATH_MAX] = ".";
-    const char *slash = strrchr(path, '/');
-    if (slash)
-        snprintf(folder, sizeof folder, "%.*s", slash == path ? 1 : (int)(slash - path), path);
+    char folder[PATH_MAX];
+    folder_of(path, folder);
     const int directory = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory < 0)
         return true;
@@ -157,12 +205,18 @@ static vit_status fail_file(vit_text *why, const char *path, const char *step, i
                 error ? ": " : "", error ? strerror(error) : "");
 }
 
-/* Returns the step that failed, with errno, or NULL. Closes `file` in any case. */
-static const char *fill_and_close(int file, const void *bytes, size_t size) {
-    const char *failed = !write_all(file, bytes, size) ? "write" : fsync(file) != 0 ? "fsync" : NULL;
+/* Returns the step that failed, with errno, or NULL. Closes `file` in any case, and last of all, since its lock goes with it.
+ */
+static const char *fill_and_rename(int file, const char *path, const void *bytes, size_t size) {
+    const char *failed = !write_all(file, bytes, size)       ? "write"
+                         : fsync(file) != 0                  ? "fsync"
+                         : rename(temporary.path, path) != 0 ? "rename"
+                                                             : NULL;
     const int error = errno;
-    if (close(file) != 0 && !failed)
-        return "close";
+    if (failed)
+        unlink(temporary.path);
+    temporary.armed = 0;
+    close(file); /* all is on the disk by now */
     errno = error;
     return failed;
 }
@@ -172,17 +226,12 @@ vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text 
     struct stat there;
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
         return fail_file(why, path, "not a regular file", 0);
+    remove_left_behind(path);
     const int file = create_temporary(path);
     if (file < 0)
         return fail_file(why, path, "cannot create a file there", errno);
-    const char *failed = fill_and_close(file, bytes, size);
-    if (!failed && rename(temporary.path, path) != 0)
-        failed = "rename";
-    const int error = errno;
+    const char *failed = fill_and_rename(file, path, bytes, size);
     if (failed)
-        unlink(temporary.path);
-    temporary.armed = 0;
-    if (failed)
-        return fail_file(why, path, failed, error);
+        return fail_file(why, path, failed, errno);
     return sync_folder(path) ? VIT_OK : fail_file(why, path, "fsync of the folder", errno);
 }

@@ -14,7 +14,8 @@ typedef struct pack_sections {
 vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vit_text *why);
 
 /* Writes `bytes` to a temporary file beside `path`, syncs and renames it: there is never a partial file under `path`.
- * The temporary file is removed on failure and by pack_abandon(), which a signal handler may call. */
+ * The temporary file, PATH.tmp-PID-N, is removed on failure and by pack_abandon(), which a signal handler may call; what a killed process
+ * left of it is removed by the next pack_save() to the same path. */
 vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why);
 void pack_abandon(void);
 

@@ -5,7 +5,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_FILE = 16 << 20, MAX_INCLUDES = 10 }; /* bytes a file; libconfig's own depth of includes */
+enum {
+    MAX_FILE = 16 << 20,
+    MAX_DEPTH = 10,
+    MAX_INCLUDES = 256
+}; /* bytes a file; libconfig's own depth of includes; all of a scene */
 
 static const field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
@@ -124,49 +128,55 @@ void scene_quality_text(const scene_quality *q, char *text, size_t room) {
             used += fields_write(&quality_fields[i], &g, text + used, room - used);
 }
 
-/* Name between the quotes of an @include line; false if the line is none. */
-static bool include_name(const char *line, char *name, size_t room) {
-    while (*line == ' ' || *line == '\t')
-        line++;
+/* Name between the quotes of an @include line; empty if libconfig would read another one than stands there: with zero bytes,
+ * escapes or line feeds in it. False if the line is no @include. */
+static bool include_name(const char *line, size_t length, char *name, size_t room) {
+    const char *end = line + length;
+    line += strspn(line, " \t");
     if (strncmp(line, "@include", 8) != 0)
         return false;
     line += 8;
-    while (*line == ' ' || *line == '\t')
-        line++;
-    const char *end = *line == '"' ? strchr(line + 1, '"') : NULL;
-    if (!end || (size_t)(end - line) > room)
+    line += strspn(line, " \t");
+    if (*line != '"')
         return false;
-    (void)snprintf(name, room, "%.*s", (int)(end - line - 1), line + 1);
+    const size_t used = strcspn(++line, "\"\\");
+    const bool plain = line + used < end && line[used] == '"' && used < room;
+    (void)snprintf(name, room, "%.*s", plain ? (int)used : 0, line);
     return true;
 }
 
-static bool check_file(const place *at, const char *path, int depth);
+/* `left`: includes that may follow. Files that include the next one twice each make 2^depth of them. */
+static bool check_file(const place *at, const char *path, int depth, int *left);
 
 /* libconfig hands includes to a scanner that ends the whole process on a folder or a device: look first. */
-static bool check_includes(const place *at, const char *path, FILE *file, int depth) {
+static bool check_includes(const place *at, const char *path, FILE *file, int depth, int *left) {
     char *line = NULL;
     size_t size = 0;
     bool fine = true;
-    for (unsigned number = 1; fine && getline(&line, &size, file) >= 0; number++) {
+    ssize_t length;
+    for (unsigned number = 1; fine && (length = getline(&line, &size, file)) >= 0; number++) {
         char name[SCENE_PATH], full[2 * SCENE_PATH];
-        if (!include_name(line, name, sizeof name))
+        if (!include_name(line, (size_t)length, name, sizeof name))
             continue;
         struct stat st;
         const int used = snprintf(full, sizeof full, "%s%s", at->folder, name);
         const bool below = name[0] && name[0] != '/' && used > 0 && used < SCENE_PATH;
-        if (!below || depth >= MAX_INCLUDES) {
+        if (!below || depth >= MAX_DEPTH || *left == 0) {
             (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: %s", path, number,
-                           below ? "@include goes deeper than 10 files" : "@include takes a path below the scene's folder");
+                           !below               ? "@include takes a path below the scene's folder"
+                           : depth >= MAX_DEPTH ? "@include goes deeper than 10 files"
+                                                : "more than 256 files are included");
             fine = false;
         } else if (stat(full, &st) == 0) { /* a missing one is libconfig's to report, unless a comment holds it */
-            fine = check_file(at, full, depth + 1);
+            --*left;
+            fine = check_file(at, full, depth + 1, left);
         }
     }
     free(line);
     return fine;
 }
 
-static bool check_file(const place *at, const char *path, int depth) {
+static bool check_file(const place *at, const char *path, int depth, int *left) {
     struct stat st;
     place here = *at;
     here.path = path;
@@ -179,7 +189,7 @@ static bool check_file(const place *at, const char *path, int depth) {
     FILE *file = fopen(path, "r");
     if (!file)
         return fields_fail(&here, NULL, "cannot be read");
-    const bool fine = check_includes(at, path, file, depth);
+    const bool fine = check_includes(at, path, file, depth, left);
     (void)fclose(file);
     return fine;
 }
@@ -237,7 +247,8 @@ vit_status scene_read(const char *path, scene *out, vit_text *why) {
     char *slash = strrchr(folder, '/');
     folder[slash ? slash + 1 - folder : 0] = '\0';
     reader r = {.s = out, .at = {.path = out->path, .folder = folder, .why = why}};
-    if (!check_file(&r.at, path, 0))
+    int includes = MAX_INCLUDES;
+    if (!check_file(&r.at, path, 0, &includes))
         return VIT_BAD_INPUT;
     config_t config;
     config_init(&config);

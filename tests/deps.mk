@@ -1,7 +1,10 @@
-# What a machine needs; nothing happens where it is all there. Debian 12 and 13, Ubuntu 24.04.
+# What a machine needs, and what single targets need beside it; nothing happens where it is all there. Debian 12 and 13, Ubuntu 24.04.
 DEPS := make gcc g++ libc6-dev ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libassimp-dev libembree-dev libstb-dev \
         libconfig-dev libpng-dev libxxhash-dev libcmocka-dev gnuplot-nox
-deps:
-	@missing=; for p in $(DEPS); do dpkg-query -W -f '$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
-	[ -z "$$missing" ] || { echo "make deps: installing$$missing"; S=; [ "$$(id -u)" = 0 ] || S=sudo; \
+FUZZ_DEPS := clang libclang-rt-dev
+deps: packages := $(DEPS)
+fuzz-deps: packages := $(FUZZ_DEPS)
+deps fuzz-deps:
+	@missing=; for p in $(packages); do dpkg-query -W -f '$${db:Status-Status}' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
+	[ -z "$$missing" ] || { echo "make $@: installing$$missing"; S=; [ "$$(id -u)" = 0 ] || S=sudo; \
 	$$S env DEBIAN_FRONTEND=noninteractive sh -c "apt-get update -qq && apt-get install -y --no-install-recommends$$missing"; }

@@ -32,7 +32,7 @@ test: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
 	@$(MAKE) $(SIDE_BY_SIDE) run-tests
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene)
+SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene) run/$(B)/tests/fuzz/test_fuzz_corpus
 # The kernels as C, too: packs that hold each effect between them, baked by the release's baker.
 HOST_SCENES := build/release/scenes
 HOST_BAKE := build/release/vitrine-bake --quiet --device host --size 96x64 --frames 1 --photons 2000
@@ -50,6 +50,12 @@ run-sanitized: $(SANITIZED) $(B)/vitrine-play
 run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS)
 $(RUNS): run/%: %
 	@echo "== $*"; $*
+
+# The same test for hours' worth of frames.
+SOAK_FRAMES ?= 20000
+soak: deps
+	@$(MAKE) $(SIDE_BY_SIDE) $(B)/tests/golden/test_soak $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	VITRINE_SOAK_FRAMES=$(SOAK_FRAMES) $(B)/tests/golden/test_soak
 
 bench: deps
 	@$(MAKE) --no-print-directory run-bench

@@ -9,6 +9,7 @@
 #include "pack_write.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -157,6 +158,71 @@ static void a_name_that_is_too_long_is_refused(void **state) {
     assert_int_equal(entries(), 0);
 }
 
+static void put(const char *end) {
+    char name[192];
+    snprintf(name, sizeof name, "%s%s", path, end);
+    FILE *file = fopen(name, "w");
+    assert_non_null(file);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void drop(const char *end) {
+    char name[192];
+    snprintf(name, sizeof name, "%s%s", path, end);
+    assert_int_equal(unlink(name), 0);
+}
+
+static void what_a_killed_process_left_is_removed_by_the_next_save(void **state) {
+    (void)state;
+    vit_text why = {""};
+    put(".tmp-4711-0");
+    put(".tmp-1-12");
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(entries(), 1);
+}
+
+static void files_that_only_look_like_ours_stay(void **state) {
+    (void)state;
+    static const char *const ends[] = {".tmp", ".tmp-1", ".tmp-1-", ".tmp--1", ".tmp-1-2x", ".tmp-x-1", "x.tmp-1-2"};
+    enum { ENDS = sizeof ends / sizeof ends[0] };
+    vit_text why = {""};
+    for (int i = 0; i < ENDS; i++)
+        put(ends[i]);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(entries(), 1 + ENDS);
+    for (int i = 0; i < ENDS; i++)
+        drop(ends[i]);
+}
+
+/* A second process that is in the middle of saving to the same name. */
+static void what_a_living_process_writes_stays(void **state) {
+    (void)state;
+    int ends[2];
+    char byte = 0;
+    vit_text why = {""};
+    assert_int_equal(pipe(ends), 0);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        char name[192];
+        snprintf(name, sizeof name, "%s.tmp-4711-0", path);
+        const int file = open(name, O_WRONLY | O_CREAT | O_EXCL, 0666);
+        const struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+        if (fcntl(file, F_SETLK, &whole) == 0 && write(ends[1], "x", 1) == 1)
+            pause();
+        _exit(1);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    close(ends[0]);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(entries(), 2);
+    assert_int_equal(kill(child, SIGKILL), 0);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(entries(), 1);
+}
+
 static void abandon_and_leave(int signal_number) {
     (void)signal_number;
     pack_abandon();
@@ -217,6 +283,9 @@ int main(void) {
         IN_A_FOLDER(a_write_that_breaks_off_leaves_nothing),
         IN_A_FOLDER(a_write_that_breaks_off_leaves_the_pack_before_it_whole),
         IN_A_FOLDER(a_signal_in_the_middle_of_a_write_leaves_nothing),
+        IN_A_FOLDER(what_a_killed_process_left_is_removed_by_the_next_save),
+        IN_A_FOLDER(files_that_only_look_like_ours_stay),
+        IN_A_FOLDER(what_a_living_process_writes_stays),
     };
 #undef IN_A_FOLDER
     return cmocka_run_group_tests_name("saving a pack", tests, NULL, NULL);

@@ -388,6 +388,20 @@ static void a_scene_that_includes_itself_is_refused(void **state) {
     refuse_path(NAME, "@include goes deeper than 10 files");
 }
 
+/* Files that include each other several times: what they make together doubles with every level. */
+static void more_than_256_included_files_are_refused(void **state) {
+    char text[2048] = "";
+    (void)state;
+    for (int i = 0; i < 20; i++)
+        strcat(text, "@include \"part.cfg\"\n");
+    put(NAME, text);
+    for (char *c = strstr(text, "part"); c; c = strstr(c, "part"))
+        memcpy(c, "deep", 4);
+    put(VIT_BUILD_DIR "/tests/unit/scene_files/part.cfg", text);
+    put(VIT_BUILD_DIR "/tests/unit/scene_files/deep.cfg", "\n");
+    refuse_path(NAME, "more than 256 files are included");
+}
+
 static void a_mistake_in_an_include_names_the_include(void **state) {
     (void)state;
     put(VIT_BUILD_DIR "/tests/unit/scene_files/part.cfg", "\noutput: { width = 0; };\n");
@@ -504,6 +518,7 @@ int main(void) {
         T(a_missing_include_is_refused_with_its_line),
         T(an_include_of_an_absolute_path_is_refused),
         T(a_scene_that_includes_itself_is_refused),
+        T(more_than_256_included_files_are_refused),
         T(a_mistake_in_an_include_names_the_include),
         T(no_prefix_of_a_scene_does_harm),
     };

@@ -1,0 +1,185 @@
+/* Import and bake on any bytes: a mesh file with its materials and images, through all steps that need no device. What is
+ * accepted must make a pack that the loader takes. Dark sides and zones take a second whatever the mesh: one input of 64 goes
+ * through them, and every seed in make test (fuzz_mesh_whole). */
+#include "fuzz.h"
+#include "pack_read.h"
+#include "photons.h"
+#include "planner.h"
+#include "zones.h"
+
+#include "pack_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool fuzz_mesh_whole;
+
+enum { WIDTH = 16, HEIGHT = 12, PHOTONS = 32, BOUNCES = 3, TRIANGLES = 500, TEXELS = 1 << 16 }; /* more is imported only */
+
+typedef struct bake {
+    bool whole;
+    scene s;
+    model m;
+    tracks t;
+    bvh b;
+    geometry g;
+    reach r;
+    atlas a;
+    plan p;
+    vit_photon *photons;
+    cells c;
+    vit_gold gold;
+} bake;
+
+static void warned(void *user, const char *line) {
+    (void)user;
+    fuzz_one_line(line, 4096);
+}
+
+/* Steps in the order of pipeline.c. One frame, so that the light is still and its photons are baked. */
+static vit_status make_shape(bake *k, vit_text *why) {
+    vit_status status = tracks_evaluate(&k->s, &k->m, &k->t, why);
+    if (status == VIT_OK)
+        status = bvh_build(&k->m, 1, &k->b, why);
+    if (status == VIT_OK)
+        status = geometry_pack(&k->m, &k->b, &k->g, why);
+    for (uint32_t i = 0; status == VIT_OK && i < 2 * k->m.triangles; i++)
+        k->r.area += (double)side_area(&k->g, i); /* for the radius */
+    if (status == VIT_OK && k->whole)
+        status = reach_dark_sides(&k->m, &k->t, 1, &k->g, 1, NULL, NULL, &k->r, why);
+    if (status == VIT_OK)
+        status = atlas_pack(&k->m, &k->a, why);
+    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &k->p, why) : status;
+}
+
+static vit_status make_photons(bake *k, vit_text *why) {
+    vit_scene *s = &k->p.scene;
+    const photons_light light = {k->t.lights[0], k->p.baked_paths[0]};
+    const photons_input in = {.triangles = k->g.triangles,
+                              .attributes = k->g.attributes,
+                              .triangle_count = k->m.triangles,
+                              .materials = k->p.materials,
+                              .atlas = &k->a,
+                              .ray_offset = k->g.ray_offset,
+                              .box_pad = s->box_pad,
+                              .radius = s->radius,
+                              .effects = s->effects,
+                              .bounces = s->bounces,
+                              .cells = k->c.count ? &k->c : NULL,
+                              .lights = &light,
+                              .light_count = 1};
+    free(k->photons);
+    vit_status status = photons_bake(&in, 1, &k->photons, &s->baked, why);
+    if (status == VIT_OK && in.cells)
+        zones_assign(&k->c, k->photons, s->baked);
+    return status;
+}
+
+static vit_status make_zones(bake *k, vit_text *why) {
+    static const bool gives[1] = {true};
+    const zones_input in = {.geometry = &k->g,
+                            .triangles = k->m.triangles,
+                            .materials = k->p.materials,
+                            .atlas = &k->a,
+                            .tracks = &k->t,
+                            .gives_photons = gives,
+                            .scene = &k->p.scene,
+                            .zones = true,
+                            .areas = true,
+                            .threads = 1};
+    zones_found found;
+    vit_status status = zones_bake(&in, &k->c, &found, why);
+    k->p.scene.cells = k->c.count;
+    return status == VIT_OK ? make_photons(k, why) : status;
+}
+
+/* bounds.c would measure these on a device. */
+static void set_bounds(vit_scene *s) {
+    s->slice_count = 16;
+    s->max_nodes = 64;
+    s->max_list = 64;
+}
+
+static void check_pack(bake *k) {
+    const pack_sections sections = {.data = {[VIT_SECTION_META] = &k->p.scene,
+                                             [VIT_SECTION_CAMS] = k->t.cameras,
+                                             [VIT_SECTION_LITE] = k->t.lights,
+                                             [VIT_SECTION_GEOM] = k->g.triangles,
+                                             [VIT_SECTION_ATTR] = k->g.attributes,
+                                             [VIT_SECTION_BVHN] = k->b.nodes,
+                                             [VIT_SECTION_MATL] = k->p.materials,
+                                             [VIT_SECTION_TEXR] = k->a.textures,
+                                             [VIT_SECTION_MIPS] = k->a.mips,
+                                             [VIT_SECTION_ATLS] = k->a.texels,
+                                             [VIT_SECTION_SIDE] = k->c.sides,
+                                             [VIT_SECTION_CELL] = k->c.cells,
+                                             [VIT_SECTION_PHOT] = k->photons,
+                                             [VIT_SECTION_GOLD] = &k->gold}};
+    vit_text why = {""};
+    void *bytes;
+    size_t size;
+    vit_pack pack;
+    set_bounds(&k->p.scene);
+    FUZZ_HOLDS(vit_pack_derive(&k->p.scene, &why) == VIT_OK && pack_assemble(&sections, &bytes, &size, &why) == VIT_OK);
+    const bool taken = vit_pack_read(bytes, size, &pack, &why) == VIT_OK;
+    if (!taken)
+        (void)fprintf(stderr, "%s\n", why.text);
+    FUZZ_HOLDS(taken);
+    free(bytes);
+}
+
+static void bake_free(bake *k) {
+    free(k->photons);
+    cells_free(&k->c);
+    plan_free(&k->p);
+    atlas_free(&k->a);
+    geometry_free(&k->g);
+    bvh_free(&k->b);
+    tracks_free(&k->t);
+}
+
+static void bake_model(bake *k) {
+    vit_text why = {""};
+    k->s.width = WIDTH;
+    k->s.height = HEIGHT;
+    k->s.frames = 1;
+    k->s.quality.photons = PHOTONS;
+    k->s.quality.bounces = BOUNCES;
+    k->s.quality.zones = k->s.quality.effective_area = k->whole;
+    vit_status status = make_shape(k, &why);
+    if (status == VIT_OK && (k->p.scene.effects & VIT_EFFECT_BIT_PHOTONS))
+        status = make_photons(k, &why);
+    if (status == VIT_OK && k->whole && (k->p.scene.effects & VIT_EFFECT_BIT_PHOTONS))
+        status = make_zones(k, &why);
+    if (status == VIT_OK)
+        check_pack(k);
+    else
+        fuzz_one_line(why.text, sizeof why.text);
+    bake_free(k);
+}
+
+static size_t texels_of(const model *m) {
+    size_t texels = 0;
+    for (int i = 0; i < m->image_count; i++)
+        texels += (size_t)m->images[i].width * (size_t)m->images[i].height;
+    return texels;
+}
+
+void fuzz_mesh(const uint8_t *data, size_t size) {
+    static const char *const names[] = {"mesh.obj", "mesh.ply", "mesh.gltf", "mesh.glb",   "mesh.mtl",
+                                        "mesh.bin", "a.tga",    "a.png",     "mesh.other", NULL};
+    fuzz_files f = {.names = names};
+    vit_text why = {""};
+    bake k;
+    memset(&k, 0, sizeof k);
+    k.whole = fuzz_mesh_whole || vit_hash(data, size) % 64 == 0;
+    fuzz_write_files(&f, data, size);
+    FUZZ_HOLDS(scene_for_mesh(f.main, &k.s, &why) == VIT_OK);
+    if (model_import(&k.s, false, warned, NULL, &k.m, &why) != VIT_OK)
+        fuzz_one_line(why.text, sizeof why.text);
+    else if (k.m.triangles <= TRIANGLES && texels_of(&k.m) <= TEXELS)
+        bake_model(&k);
+    model_free(&k.m);
+    scene_free(&k.s);
+}

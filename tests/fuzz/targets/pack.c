@@ -1,0 +1,316 @@
+/* The pack loader on any bytes. Random bytes never get past the hashes, so an input is either a pack as it is (it begins with
+ * the magic number; read as it is and again with its hashes made right) or a script of edits to a good one:
+ *
+ *   chain N             begin from a deep tree of N nodes rather than from the cube
+ *   plain               leave META's derived fields and the sections' sizes as they were: otherwise they follow META's counts
+ *   CODE INDEX = HEX    word INDEX of section CODE (modulo its words); "+" adds, "^" flips bits
+ *   HEAD, TABL, FILE    instead of CODE: the header, the section table, the whole file
+ *   kept                the table's own hash stays as it was: otherwise all hashes are made right after the edits
+ *   cut N               the file ends after N bytes
+ *
+ * What is accepted must be safe to play: every index that a kernel would follow is followed here, under the sanitizer. */
+#include "fuzz.h"
+#include "pack_fixture.h"
+#include "pack_read.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MAX_SECTION = 1 << 18, MAX_EDITS = 64 };
+
+typedef enum edit_place { PLACE_HEAD = VIT_SECTION_COUNT, PLACE_TABL, PLACE_FILE } edit_place;
+
+static const char codes[][5] = {
+#define X(code, type, records) #code,
+    VIT_SECTIONS(X)
+#undef X
+        "HEAD",
+    "TABL",
+    "FILE",
+};
+enum { PLACES = sizeof codes / sizeof codes[0] };
+
+typedef struct edit {
+    int place;
+    uint32_t index, value;
+    char how;
+} edit;
+
+typedef struct script {
+    edit edits[MAX_EDITS];
+    int count;
+    uint32_t chain, cut;
+    bool plain, kept;
+} script;
+
+/* ---- reading a script ---- */
+
+static void read_line(script *s, const char *line) {
+    char code[5];
+    edit e;
+    if (sscanf(line, "chain %u", &s->chain) == 1 || sscanf(line, "cut %u", &s->cut) == 1)
+        return;
+    s->plain |= strcmp(line, "plain") == 0;
+    s->kept |= strcmp(line, "kept") == 0;
+    if (s->count == MAX_EDITS || sscanf(line, "%4s %u %c %x", code, &e.index, &e.how, &e.value) != 4)
+        return;
+    for (e.place = 0; e.place < PLACES; e.place++)
+        if (strcmp(code, codes[e.place]) == 0) {
+            s->edits[s->count++] = e;
+            return;
+        }
+}
+
+static void read_script(script *s, const uint8_t *data, size_t size) {
+    char line[64];
+    *s = (script){.cut = UINT32_MAX};
+    for (size_t at = 0; at < size;) {
+        const uint8_t *feed = memchr(data + at, '\n', size - at);
+        const size_t length = feed ? (size_t)(feed - data) - at : size - at;
+        (void)snprintf(line, sizeof line, "%.*s", (int)(length < sizeof line ? length : sizeof line - 1),
+                       (const char *)data + at);
+        read_line(s, line);
+        at += length + 1;
+    }
+}
+
+static void apply(const script *s, int place, void *bytes, size_t size) {
+    for (int i = 0; i < s->count; i++) {
+        const edit *e = &s->edits[i];
+        if (e->place != place || size < 4)
+            continue;
+        unsigned char *at = (unsigned char *)bytes + 4 * (e->index % (size / 4));
+        uint32_t word;
+        memcpy(&word, at, 4);
+        word = e->how == '+' ? word + e->value : e->how == '^' ? word ^ e->value : e->value;
+        memcpy(at, &word, 4);
+    }
+}
+
+/* ---- making the pack ---- */
+
+typedef struct forged {
+    void *section[VIT_SECTION_COUNT];
+    unsigned char *bytes; /* a heap block of exactly `size` bytes: a sanitizer sees any reading beyond it */
+    size_t size;
+} forged;
+
+static void forged_free(forged *p) {
+    for (int i = 0; i < VIT_SECTION_COUNT; i++)
+        free(p->section[i]);
+    free(p->bytes);
+}
+
+/* Bytes of each section as `s` counts them. */
+static void count_bytes(const vit_scene *s, uint64_t bytes[VIT_SECTION_COUNT]) {
+    int i = 0;
+#define X(code, type, records) bytes[i++] = (uint64_t)(records) * sizeof(type);
+    VIT_SECTIONS(X)
+#undef X
+}
+
+/* The fixture's section in the wanted length; where it is longer, its records are repeated. NULL: too long. */
+static void *resized(const void *from, uint64_t have, uint64_t want) {
+    if (want > MAX_SECTION || (have == 0 && want > 0))
+        return NULL;
+    unsigned char *to = calloc(1, (size_t)want + 4);
+    FUZZ_HOLDS(to != NULL);
+    for (uint64_t done = 0; done < want; done += have)
+        memcpy(to + done, from, (size_t)(want - done < have ? want - done : have));
+    return to;
+}
+
+/* Sections by the edited META, or as they were. */
+static bool fill_sections(const script *sc, const pack_fixture *f, forged *out) {
+    const void *from[VIT_SECTION_COUNT] = {&f->scene, f->cameras,   f->lights,   f->triangles, f->attributes,
+                                           f->nodes,  f->materials, f->textures, f->mips,      f->texels,
+                                           f->sides,  f->cells,     f->photons,  f->golds};
+    uint64_t have[VIT_SECTION_COUNT], want[VIT_SECTION_COUNT];
+    vit_scene s = f->scene;
+    apply(sc, VIT_SECTION_META, &s, sizeof s);
+    if (!sc->plain)
+        (void)vit_pack_derive(&s, NULL);
+    count_bytes(&f->scene, have);
+    count_bytes(sc->plain ? &f->scene : &s, want);
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        out->section[i] = resized(i == VIT_SECTION_META ? &s : from[i], have[i], want[i]);
+        if (!out->section[i])
+            return false;
+        if (i != VIT_SECTION_META)
+            apply(sc, i, out->section[i], (size_t)want[i]);
+    }
+    return true;
+}
+
+/* Sizes of the sections come from META in pack_assemble(): with `plain` it gets the old META first. */
+static bool assemble(const script *sc, const pack_fixture *f, forged *out) {
+    pack_sections sections = {{0}};
+    void *image;
+    size_t size;
+    for (int i = 0; i < VIT_SECTION_COUNT; i++)
+        sections.data[i] = out->section[i];
+    if (sc->plain)
+        sections.data[VIT_SECTION_META] = &f->scene;
+    if (pack_assemble(&sections, &image, &size, NULL) != VIT_OK)
+        return false;
+    const vit_pack_entry *table = (const vit_pack_entry *)((const vit_pack_header *)image + 1);
+    memcpy((char *)image + table[VIT_SECTION_META].offset, out->section[VIT_SECTION_META], sizeof f->scene);
+    out->size = sc->cut < size ? sc->cut : size;
+    out->bytes = aligned_alloc(8, out->size + 8 - out->size % 8);
+    FUZZ_HOLDS(out->bytes != NULL);
+    memcpy(out->bytes, image, out->size);
+    free(image);
+    return true;
+}
+
+/* Makes hashes right, as far as the table's places lie in the file. */
+static void repair(unsigned char *bytes, size_t size, bool kept) {
+    vit_pack_header *header = (vit_pack_header *)(void *)bytes;
+    vit_pack_entry *table = (vit_pack_entry *)(header + 1);
+    if (size < sizeof *header + VIT_SECTION_COUNT * sizeof *table)
+        return;
+    for (int i = 0; i < VIT_SECTION_COUNT; i++)
+        if (table[i].offset <= size && table[i].size <= size - table[i].offset)
+            table[i].hash = vit_hash(bytes + table[i].offset, (size_t)table[i].size);
+    if (!kept)
+        header->table_hash = vit_hash(table, VIT_SECTION_COUNT * sizeof *table);
+}
+
+static void edit_file(const script *sc, forged *p) {
+    const size_t head = sizeof(vit_pack_header), all = head + VIT_SECTION_COUNT * sizeof(vit_pack_entry);
+    apply(sc, PLACE_FILE, p->bytes, p->size);
+    if (p->size < all)
+        return;
+    apply(sc, PLACE_TABL, p->bytes + head, all - head);
+    repair(p->bytes, p->size, sc->kept);
+    apply(sc, PLACE_HEAD, p->bytes, head);
+}
+
+/* ---- what an accepted pack must hold ---- */
+
+static uint32_t sum; /* of all that is read, so that it is read */
+
+static void follow_mip(const vit_pack *p, const vit_mip *m) {
+    const vit_u32 *texels = p->section[VIT_SECTION_ATLS];
+    const int64_t w = m->width, h = m->height, x[] = {-1, w}, y[] = {-1, h};
+    for (int i = 0; i < 4; i++) {
+        const int64_t word = (int64_t)m->offset + y[i / 2] * (int64_t)m->pitch + x[i % 2];
+        FUZZ_HOLDS(word >= 0 && word < p->scene->texels);
+        sum += texels[word];
+    }
+}
+
+static void follow_material(const vit_pack *p, uint32_t index) {
+    const vit_material *materials = p->section[VIT_SECTION_MATL];
+    const vit_texture *textures = p->section[VIT_SECTION_TEXR];
+    const vit_mip *mips = p->section[VIT_SECTION_MIPS];
+    const vit_u32 texture = materials[index].texture;
+    FUZZ_HOLDS(index < p->scene->materials);
+    if (texture == VIT_NONE)
+        return;
+    FUZZ_HOLDS(texture < p->scene->textures && textures[texture].mip_count > 0);
+    for (vit_u32 i = 0; i < textures[texture].mip_count; i++)
+        follow_mip(p, &mips[textures[texture].first_mip + i]);
+}
+
+static void follow_cells(const vit_pack *p, uint32_t triangle) {
+    const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
+    const vit_cell *cells = p->section[VIT_SECTION_CELL];
+    for (uint32_t side = 2 * triangle; p->scene->cells && side < 2 * triangle + 2; side++) {
+        const vit_u32 n = sides[side] >> VIT_SIDE_PARTS_SHIFT, first = sides[side] & VIT_SIDE_CELL;
+        FUZZ_HOLDS(n >= 1 && first + n * n <= p->scene->cells);
+        sum += cells[first].word + cells[first + n * n - 1].word;
+    }
+}
+
+/* As a ray would that hits every box. Returns the triangles met. */
+static uint32_t follow_tree(const vit_pack *p) {
+    const vit_bvh_node *nodes = p->section[VIT_SECTION_BVHN];
+    const vit_attributes *attributes = p->section[VIT_SECTION_ATTR];
+    uint32_t stack[VIT_BVH_STACK] = {0}, waiting = 1, met = 0;
+    while (waiting > 0) {
+        const vit_bvh_node *n = &nodes[stack[--waiting]];
+        const vit_u32 children[2] = {n->child1, n->child0};
+        for (int c = 0; c < 2; c++) {
+            const vit_u32 first = children[c] & VIT_LEAF_FIRST, count = (children[c] >> VIT_LEAF_SHIFT & 7) + 1;
+            const bool leaf = children[c] & VIT_LEAF_BIT, missing = c == 0 && n->lo1[0] > n->hi1[0];
+            FUZZ_HOLDS(leaf || waiting < VIT_BVH_STACK);
+            if (!leaf)
+                stack[waiting++] = children[c];
+            for (vit_u32 i = first; leaf && i < first + count; i++) {
+                FUZZ_HOLDS(i < p->scene->triangles);
+                follow_material(p, attributes[i].material & VIT_MATERIAL_INDEX);
+                follow_cells(p, i);
+            }
+            met += leaf && !missing ? count : 0;
+        }
+    }
+    return met;
+}
+
+static void check_needs(const vit_open_info *info) {
+    vit_requirements need;
+    vit_text why = {""};
+    uint64_t bytes = 0;
+    FUZZ_HOLDS(vit_require(info, &need, &why) == VIT_OK);
+    for (uint32_t i = 0; i < need.buffer_count; i++)
+        bytes += need.buffers[i].bytes;
+    FUZZ_HOLDS(bytes == need.device_bytes && bytes < (uint64_t)1 << 40 && need.pass_count > 0);
+    FUZZ_HOLDS(need.frame_bytes == (size_t)need.width * need.height * (info->format == VIT_FORMAT_RGBA32F ? 16 : 4));
+}
+
+static void read_pack(const unsigned char *bytes, size_t size) {
+    vit_pack pack;
+    vit_text why;
+    memset(&why, 'x', sizeof why);
+    const vit_status status = vit_pack_read(bytes, size, &pack, &why);
+    if (status != VIT_OK) {
+        FUZZ_HOLDS(status == VIT_BAD_INPUT && strncmp(why.text, "pack: ", 6) == 0);
+        fuzz_one_line(why.text, sizeof why.text);
+        return;
+    }
+    FUZZ_HOLDS(follow_tree(&pack) == pack.scene->triangles);
+    check_needs(&(vit_open_info){.pack = bytes, .pack_size = size});
+    check_needs(&(vit_open_info){.pack = bytes,
+                                 .pack_size = size,
+                                 .lanes = 16,
+                                 .count_work = 1,
+                                 .format = VIT_FORMAT_RGBA32F,
+                                 .view = VIT_VIEW_photons});
+}
+
+/* ---- the target ---- */
+
+static void read_as_it_is(const uint8_t *data, size_t size) {
+    unsigned char *bytes = aligned_alloc(8, size + 8 - size % 8);
+    FUZZ_HOLDS(bytes != NULL);
+    memcpy(bytes, data, size);
+    read_pack(bytes, size);
+    repair(bytes, size, false);
+    read_pack(bytes, size);
+    free(bytes);
+}
+
+void fuzz_pack(const uint8_t *data, size_t size) {
+    if (size >= 8 && memcmp(data, VIT_PACK_MAGIC, 8) == 0) {
+        read_as_it_is(data, size);
+        return;
+    }
+    script s;
+    pack_fixture *f = malloc(sizeof *f);
+    forged p = {.size = 0};
+    FUZZ_HOLDS(f != NULL);
+    read_script(&s, data, size);
+    if (s.chain > 0)
+        fixture_make_chain(f, 1 + (s.chain - 1) % (FIXTURE_TRIANGLES - 1));
+    else
+        fixture_make(f);
+    vit_pack_derive(&f->scene, NULL);
+    if (fill_sections(&s, f, &p) && assemble(&s, f, &p)) {
+        edit_file(&s, &p);
+        read_pack(p.bytes, p.size);
+    }
+    forged_free(&p);
+    free(f);
+}
