@@ -1,7 +1,8 @@
-/* Triangles and attributes in the BVH's leaf order, as records.clh lays them out. Plain float arithmetic throughout
+/* Triangles and attributes in the BVH's leaf order, as records.clh lays them out. Plain arithmetic throughout
  * (-ffp-contract=off): the bytes do not depend on compiler or machine. */
 #include "bvh.h"
 #include "octahedral.h"
+#include "triangle.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,11 +21,11 @@ static void pack_triangle(const model *m, const uint32_t corner[3], vit_triangle
     memcpy(t->v0, m->position + 3 * (size_t)corner[0], sizeof t->v0);
     memcpy(t->v1, m->position + 3 * (size_t)corner[1], sizeof t->v1);
     memcpy(t->v2, m->position + 3 * (size_t)corner[2], sizeof t->v2);
-    const float a[3] = {t->v1[0] - t->v0[0], t->v1[1] - t->v0[1], t->v1[2] - t->v0[2]};
-    const float b[3] = {t->v2[0] - t->v0[0], t->v2[1] - t->v0[1], t->v2[2] - t->v0[2]};
-    t->nx = a[1] * b[2] - a[2] * b[1];
-    t->ny = a[2] * b[0] - a[0] * b[2];
-    t->nz = a[0] * b[1] - a[1] * b[0];
+    float n[3];
+    triangle_normal(t->v0, t->v1, t->v2, n);
+    t->nx = n[0];
+    t->ny = n[1];
+    t->nz = n[2];
 }
 
 static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t material, vit_attributes *a) {

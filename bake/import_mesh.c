@@ -1,4 +1,5 @@
 #include "importer.h"
+#include "triangle.h"
 #include <assimp/mesh.h>
 #include <float.h>
 #include <math.h>
@@ -20,12 +21,11 @@ static double determinant(const double m[12]) {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
 }
 
-/* (v1 - v0) x (v2 - v0) as vit_triangle has it, in float. */
+/* By the normal, as vit_triangle has it. */
 typedef enum shape { SHAPE_GOOD, SHAPE_FLAT, SHAPE_NOT_FINITE } shape;
 static shape triangle_shape(const float *a, const float *b, const float *c) {
-    const float e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const float f[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    const float n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+    float n[3];
+    triangle_normal(a, b, c, n);
     const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     if (!isfinite(square)) /* any NaN or infinity among the nine ends up here, and what would overflow later */
         return SHAPE_NOT_FINITE;

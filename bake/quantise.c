@@ -1,4 +1,5 @@
 #include "quantise.h"
+#include "triangle.h"
 #include "octahedral.h"
 #include <math.h>
 #include <stdio.h>
@@ -28,12 +29,10 @@ static void snap_normals(model *m) {
     }
 }
 
-/* In the arithmetic of vit_triangle's normal, which must not be 0. */
 static bool has_area(const model *m, const uint32_t *corner) {
-    const float *v0 = m->position + 3 * (size_t)corner[0], *v1 = m->position + 3 * (size_t)corner[1];
-    const float *v2 = m->position + 3 * (size_t)corner[2];
-    const float a[3] = {v1[0] - v0[0], v1[1] - v0[1], v1[2] - v0[2]}, b[3] = {v2[0] - v0[0], v2[1] - v0[1], v2[2] - v0[2]};
-    return a[1] * b[2] - a[2] * b[1] != 0 || a[2] * b[0] - a[0] * b[2] != 0 || a[0] * b[1] - a[1] * b[0] != 0;
+    float n[3];
+    triangle_normal(m->position + 3 * (size_t)corner[0], m->position + 3 * (size_t)corner[1], m->position + 3 * (size_t)corner[2], n);
+    return n[0] != 0 || n[1] != 0 || n[2] != 0;
 }
 
 static void drop_degenerate(model *m) {

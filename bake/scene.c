@@ -39,7 +39,7 @@ static const field quality_fields[] = {
     [QUALITY_FLATTEN] = {"flatten", FIELD_NUMBER, offsetof(quality_group, q.flatten), "(0, 1e4]"},
     {"photons", FIELD_WHOLE, offsetof(quality_group, q.photons), "[0, 1000000]"},
     {"bounces", FIELD_WHOLE, offsetof(quality_group, q.bounces), "[1, 32]"},
-    {"radius", FIELD_AUTO, offsetof(quality_group, q.radius), "(0, 1e6]"},
+    {"radius", FIELD_AUTO, offsetof(quality_group, q.radius), "[1e-12, 1e6]"},
     {"tile", FIELD_WHOLE, offsetof(quality_group, q.tile), "[8, 64]"},
     {"estimate", FIELD_CHOICE, offsetof(quality_group, q.buckets), "list|buckets"},
     {"smoothing", FIELD_CHOICE, offsetof(quality_group, q.raw), "interpolated|raw"},

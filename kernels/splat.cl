@@ -52,6 +52,12 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
 
 #define SPLAT_LOAD(p) L_LOAD((local const float *)(p))
 
+/* A photon is left out of a node only if it counts for no sample in it, after all roundings: so estimates from lists do not depend on
+ * how samples are clustered, to the bit. The box's distance rounds as a sample's does and is never greater; 1 / r^2 may be rounded
+ * down, which lets a sample see a little beyond r; and the two sums of three products below 1 are off by less than 5e-7 together. */
+#define SPLAT_BEYOND 1.000001f
+#define SPLAT_BEHIND 1e-6f
+
 /* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box (METHODS.md P (3.8)) and which do not come from
  * behind for every normal in it; or, with zones, which lie in a zone that counts for one of its samples. */
 static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
@@ -59,12 +65,12 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
     lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
     lf ox = x - l_max(L_F(box->lo[0]), l_min(x, L_F(box->hi[0]))), oy = y - l_max(L_F(box->lo[1]), l_min(y, L_F(box->hi[1]))),
        oz = z - l_max(L_F(box->lo[2]), l_min(z, L_F(box->hi[2])));
-    li near = L_LT(fma(oz, oz, fma(oy, oy, ox * ox)), SPLAT_LOAD(b->radius2 + i));
+    li near = L_LT(fma(oz, oz, fma(oy, oy, ox * ox)), SPLAT_LOAD(b->radius2 + i) * SPLAT_BEYOND);
     if (VIT_EFFECT_ZONES)
         return near & L_NE(L_AS_INT(L_LOAD((local const uint *)(b->zone + i)) & box->accept), L_I(0));
     lf dx = SPLAT_LOAD(b->dx + i), dy = SPLAT_LOAD(b->dy + i), dz = SPLAT_LOAD(b->dz + i);
     lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) + l_min(dz * box->nlo[2], dz * box->nhi[2]);
-    return near & L_LT(least, L_F(0));
+    return near & L_LT(least, L_F(SPLAT_BEHIND));
 }
 
 /* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is

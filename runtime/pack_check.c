@@ -8,12 +8,24 @@ vit_status pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit
             return pack_refuse(why, "section CAMS: camera %u: a vector is not finite", i);
         if (!is_unit(c->forward))
             return pack_refuse(why, "section CAMS: camera %u: forward is not a unit vector", i);
-        if (!in_range(c->exposure, 0.0f, FLT_MAX))
-            return pack_refuse(why, "section CAMS: camera %u: exposure must be finite and >= 0", i);
+        if (!in_range(c->exposure, 0.0f, VIT_MAX_EXPOSURE))
+            return pack_refuse(why, "section CAMS: camera %u: exposure must be in 0..%g", i, (double)VIT_MAX_EXPOSURE);
         if (!(c->pad0 == 0.0f && c->pad1 == 0.0f && c->pad2 == 0.0f && c->pad3 == 0.0f))
             return pack_refuse(why, "section CAMS: camera %u: padding is not 0", i);
     }
     return VIT_OK;
+}
+
+/* A photon's power over its disc, as kernels/photons.cl has it, at the light's range, where falloff WINDOW makes most of it. */
+static bool photons_are_finite(const vit_scene *s, const vit_light *l) {
+    if (l->path_count == 0)
+        return true;
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = l->intensity[k] > most ? l->intensity[k] : most;
+    if (l->falloff == VIT_FALLOFF_WINDOW)
+        most /= l->inv_range2;
+    return most * 8.0 / l->path_count / ((double)s->radius * s->radius) <= VIT_MAX_PHOTON;
 }
 
 static const char *light_fault(const vit_scene *s, const vit_light *l) {
@@ -30,8 +42,8 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "cos_outer must be in -1..1";
     if (!all_finite(&l->spot_scale, 1) || !all_finite(&l->spot_offset, 1))
         return "spot_scale or spot_offset is not finite";
-    if (!all_in_range(l->intensity, 3, 0.0f, FLT_MAX))
-        return "intensity must be finite and >= 0";
+    if (!all_in_range(l->intensity, 3, 0.0f, VIT_MAX_INTENSITY))
+        return "intensity must be in 0..1e15";
     if (!in_range(l->inv_range2, 0.0f, FLT_MAX))
         return "inv_range2 must be finite and >= 0";
     if (spot && !(s->effects & VIT_EFFECT_BIT_SPOT))
@@ -40,6 +52,8 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "a range without the effect RANGE";
     if (l->falloff == VIT_FALLOFF_WINDOW && !(l->inv_range2 > 0.0f))
         return "falloff WINDOW without a range";
+    if (!photons_are_finite(s, l))
+        return "its photons' power over the square of the radius is more than 1e30";
     if ((uint64_t)l->path_first + l->path_count > s->paths)
         return "paths run beyond the scene's";
     if (l->path_first % 16 != 0 || l->path_count % 16 != 0) /* a packet of paths has one light, at any number of lanes */
@@ -100,8 +114,8 @@ vit_status pack_check_materials(const vit_scene *s, const vit_material *material
         const vit_material *m = &materials[i];
         if (!all_in_range(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO))
             return pack_refuse(why, "section MATL: material %u: albedo must be in 0..%g", i, (double)VIT_MAX_ALBEDO);
-        if (!all_in_range(m->emission, 3, 0.0f, FLT_MAX))
-            return pack_refuse(why, "section MATL: material %u: emission must be finite and >= 0", i);
+        if (!all_in_range(m->emission, 3, 0.0f, VIT_MAX_RADIANCE))
+            return pack_refuse(why, "section MATL: material %u: emission must be in 0..%g", i, (double)VIT_MAX_RADIANCE);
         if (m->texture != VIT_NONE && m->texture >= s->textures)
             return pack_refuse(why, "section MATL: material %u: texture %u of %u", i, m->texture, s->textures);
         if (m->cutout > 1)
@@ -158,8 +172,8 @@ static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
     if (!all_finite(p->position, 3) || !all_finite(p->direction, 3) || !all_finite(&p->radius2, 1) ||
         !all_finite(&p->inv_radius2, 1))
         return "position, direction or radius is not finite";
-    if (!all_in_range(p->power, 3, 0.0f, FLT_MAX))
-        return "power must be finite and >= 0";
+    if (!all_in_range(p->power, 3, 0.0f, VIT_MAX_PHOTON))
+        return "power must be in 0..1e30";
     const vit_u32 zone = p->zone & (s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f ? ~(p->zone & (0u - p->zone)) : ~0u);
     if (zone != 0 || (p->zone == 0 && s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f))
         return "zone is not one bit, or not 0 without zones";

@@ -36,7 +36,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         float value, least, most;
     } floats[] = {
         {"fps", s->fps, least, 1000.0f},
-        {"radius", s->radius, s->effects & VIT_EFFECT_BIT_PHOTONS ? least : 0.0f, FLT_MAX},
+        {"radius", s->radius, s->effects & VIT_EFFECT_BIT_PHOTONS ? VIT_MIN_RADIUS : 0.0f, 1.0f / VIT_MIN_RADIUS},
         {"flatten", s->flatten, 0.0f, FLT_MAX},
         {"ray_offset", s->ray_offset, 0.0f, FLT_MAX},
         {"box_pad", s->box_pad, 0.0f, FLT_MAX},
@@ -46,9 +46,9 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"grid_low y", s->grid_low[1], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
         {"grid_low z", s->grid_low[2], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
         {"grid_step", s->grid_step, small ? least : 0.0f, small ? FLT_MAX / 65536 : 0.0f},
-        {"background red", s->background[0], 0.0f, FLT_MAX},
-        {"background green", s->background[1], 0.0f, FLT_MAX},
-        {"background blue", s->background[2], 0.0f, FLT_MAX},
+        {"background red", s->background[0], 0.0f, VIT_MAX_RADIANCE},
+        {"background green", s->background[1], 0.0f, VIT_MAX_RADIANCE},
+        {"background blue", s->background[2], 0.0f, VIT_MAX_RADIANCE},
     };
     for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
         if (!in_range(floats[i].value, floats[i].least, floats[i].most))

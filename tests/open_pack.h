@@ -21,11 +21,12 @@ typedef struct open_pack {
             fail_msg("%s: %s", #call, (p)->why.text);                                                                          \
     } while (0)
 
-/* `how` is all of vit_open_info but pack and arena. */
-static inline void pack_open(open_pack *p, const char *name, vit_open_info how) {
+/* `bytes` are malloc'ed and become the open pack's; `how` is all of vit_open_info but pack and arena. */
+static inline void pack_open_bytes(open_pack *p, void *bytes, size_t size, vit_open_info how) {
     memset(p, 0, sizeof *p);
     p->info = how;
-    p->info.pack = p->bytes = test_packs_load(test_pack(name), &p->info.pack_size);
+    p->info.pack = p->bytes = bytes;
+    p->info.pack_size = size;
     assert_vit_ok(p, vit_require(&p->info, &p->need, &p->why));
     p->info.arena = p->arena = aligned_alloc(64, (p->need.host_bytes + 63) / 64 * 64);
     p->info.arena_size = p->need.host_bytes;
@@ -34,6 +35,12 @@ static inline void pack_open(open_pack *p, const char *name, vit_open_info how) 
     assert_non_null(p->frame);
     p->stride = p->need.frame_bytes / p->need.height;
     assert_vit_ok(p, vit_open(&p->info, &p->v, &p->why));
+}
+
+static inline void pack_open(open_pack *p, const char *name, vit_open_info how) {
+    size_t size;
+    void *bytes = test_packs_load(test_pack(name), &size);
+    pack_open_bytes(p, bytes, size, how);
 }
 
 static inline void pack_close(open_pack *p) {

@@ -5,8 +5,21 @@ BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(
 BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
 SCENES_MADE := $(B)/scenes/atrium.obj
 
+# Kernel functions as C on plain arrays (tests/host_lab.h), for the catalogue of hard cases.
+HOST_LAB := $(B)/tests/host_lab.o $(HOST_ISAS:%=$(B)/tests/host_lab_%.o)
+$(B)/host_labs.h: Makefile tests/test.mk
+	@mkdir -p $(@D)
+	@for i in $(HOST_ISAS); do echo "LAB($$i)"; done > $@
+$(B)/tests/host_lab.o: CFLAGS_ALL += -I$(B)
+$(B)/tests/host_lab.o: $(B)/host_labs.h
+$(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_kernels.c $(B)/kernel_list.h
+	@mkdir -p $(@D)
+	$(CC) $(HOST_CFLAGS) -Wno-unused-function -Wno-unused-variable $(HOST_FLAGS_$*) -DVIT_LANES=8 -DHOST_ISA='"$*"' -DHOST_LAB=host_lab_$* -c $< -o $@
+
+NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
+$(NUMERIC_PROGRAMS): $(HOST_LAB)
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
-	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $^ -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write
@@ -26,7 +39,7 @@ JOBS ?= $(shell nproc)
 SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
 LONGEST := $(patsubst %,$(B)/tests/golden/test_%,effects furnace bounds cost bake_twice same_bits work_counts) $(B)/tests/unit/test_zones
 RUNS := $(addprefix run/,$(LONGEST) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
-.PHONY: run-tests run-bench run-sanitized $(RUNS)
+.PHONY: numeric run-tests run-bench run-sanitized $(RUNS)
 test: deps
 	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize run-sanitized
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
@@ -56,6 +69,12 @@ SOAK_FRAMES ?= 20000
 soak: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(B)/tests/golden/test_soak $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	VITRINE_SOAK_FRAMES=$(SOAK_FRAMES) $(B)/tests/golden/test_soak
+# The catalogue of hard cases: every numeric test whole, one table of rows, a plot a sweep.
+numeric: deps
+	@$(MAKE) $(SIDE_BY_SIDE) $(NUMERIC_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	@rm -rf $(B)/numeric build/numeric
+	@VITRINE_NUMERIC=whole $(MAKE) $(SIDE_BY_SIDE) $(addprefix run/,$(NUMERIC_PROGRAMS)) > $(B)/numeric.log 2>&1 || { cat $(B)/numeric.log; exit 1; }
+	@tests/numeric/catalogue.sh $(B)/numeric build/numeric
 
 bench: deps
 	@$(MAKE) --no-print-directory run-bench

@@ -96,15 +96,14 @@ static void records_follow_the_leaf_order_with_exact_vertices(void **state) {
     drop(&f);
 }
 
-static void the_normal_is_the_cross_product_without_contraction(void **state) {
+static void the_normal_is_exact_where_products_cancel(void **state) {
     (void)state;
     fixture f = make(1);
-    /* a.y * b.z - a.z * b.y = (1 + 2^-12)^2 - 1: exact in a fused operation, rounded twice here */
+    /* a.y * b.z - a.z * b.y = (1 + 2^-12)^2 - 1 = 2^-11 + 2^-24; in float the product would lose the last bit */
     const float e = 1.0f + 0x1p-12f, corners[9] = {0, 0, 0, 0, e, 1, 0, 1, e};
     memcpy(f.m.position, corners, sizeof corners);
     geometry g = pack(&f);
-    volatile float square = e * e, difference = square - 1.0f;
-    assert_true(g.triangles[0].nx == difference);
+    assert_true(g.triangles[0].nx == 0x1p-11f + 0x1p-24f);
     assert_true(g.triangles[0].ny == 0.0f && g.triangles[0].nz == 0.0f);
     geometry_free(&g);
     drop(&f);
@@ -182,7 +181,7 @@ static void rays_start_well_clear_of_rounding_and_scale_with_the_scene(void **st
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(records_follow_the_leaf_order_with_exact_vertices),
-        cmocka_unit_test(the_normal_is_the_cross_product_without_contraction),
+        cmocka_unit_test(the_normal_is_exact_where_products_cancel),
         cmocka_unit_test(normals_are_right_within_the_stated_angle),
         cmocka_unit_test(the_six_axes_are_exact),
         cmocka_unit_test(rays_start_well_clear_of_rounding_and_scale_with_the_scene),

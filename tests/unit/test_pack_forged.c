@@ -125,6 +125,13 @@
     X(CAMS, right_is_infinite, "camera 0: a vector is not finite", im->cameras[0].right[0] = -INFINITY)                        \
     X(CAMS, forward_too_long, "forward is not a unit", im->cameras[1].forward[2] = -1.002f)                                    \
     X(CAMS, forward_is_nan, "forward is not a unit", im->cameras[1].forward[0] = NAN)                                          \
+    X(META, radius_too_small_to_square, "radius", im->scene->radius = 1e-20f)                                                  \
+    X(META, background_near_the_largest_float, "background", im->scene->background[1] = 1e38f)                                 \
+    X(CAMS, exposure_near_the_largest_float, "exposure", im->cameras[0].exposure = 1e38f)                                      \
+    X(LITE, intensity_near_the_largest_float, "intensity", im->lights[1].intensity[2] = 1e38f)                                 \
+    X(LITE, photons_that_would_be_infinite, "power over the square", im->scene->radius = 1e-14f, bright(im))                  \
+    X(MATL, emission_near_the_largest_float, "emission", im->materials[0].emission[0] = 1e38f)                                 \
+    X(PHOT, power_near_the_largest_float, "power", im->photons[0].power[1] = 1e38f)                                            \
     X(CAMS, negative_exposure, "exposure", im->cameras[0].exposure = -1)                                                       \
     X(CAMS, padding_in_use, "padding", im->cameras[1].pad3 = 1)                                                                \
     X(LITE, unknown_kind, "frame 0, light 0: unknown kind", im->lights[0].kind = 2)                                            \
@@ -238,7 +245,10 @@
     X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 16)                                            \
     X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK)                                       \
     X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
-    X(emission, im->materials[0].emission[0] = FLT_MAX)                                                                        \
+    X(most_emission, im->materials[0].emission[0] = VIT_MAX_RADIANCE)                                                          \
+    X(most_intensity, im->lights[0].intensity[0] = VIT_MAX_INTENSITY)                                                          \
+    X(most_exposure, im->cameras[0].exposure = VIT_MAX_EXPOSURE)                                                               \
+    X(least_radius, im->scene->radius = VIT_MIN_RADIUS, dim(im))                                                               \
     X(mirrored_texture, im->textures[0].wrap_u = im->textures[0].wrap_v = VIT_WRAP_MIRROR)                                     \
     X(parts_up_to_the_last_cell, im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 2)                                                \
     X(a_cell_that_accepts_nothing, im->cells[0].accept = 0)                                                                    \
@@ -277,6 +287,16 @@ static void empty_box(float *lo, float *hi) {
         lo[k] = FLT_MAX;
         hi[k] = -FLT_MAX;
     }
+}
+
+static void bright(image *im) {
+    for (int i = 0; i < FIXTURE_FRAMES * FIXTURE_LIGHTS; i++)
+        im->lights[i].intensity[0] = 1e6f;
+}
+
+static void dim(image *im) {
+    for (int i = 0; i < FIXTURE_FRAMES * FIXTURE_LIGHTS; i++)
+        memset(im->lights[i].intensity, 0, sizeof im->lights[i].intensity);
 }
 
 static void clear_zones(image *im) {

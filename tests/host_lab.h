@@ -1,0 +1,45 @@
+/* Kernel functions compiled as C, as the device `host` has them, called on plain arrays: no OpenCL, nothing compiled at start.
+ * What ray_lab.h does on a device, for catalogues of millions of rays. Eight lanes, the best instruction set that the machine
+ * runs; neither changes a bit (tests/golden/test_same_bits.c). */
+#ifndef VIT_TESTS_HOST_LAB_H
+#define VIT_TESTS_HOST_LAB_H
+
+#include "vitrine_pack.h"
+
+#include <stddef.h>
+
+#define HOST_LAB_LANES 8u
+
+/* A mesh as rays see it; materials have no holes. */
+typedef struct host_lab_mesh {
+    const vit_scene *scene; /* triangles, box_pad; for surfaces ray_offset too */
+    const vit_triangle *triangles;
+    const vit_attributes *attributes;
+    const vit_material *materials;
+    const vit_bvh_node *nodes;
+} host_lab_mesh;
+
+/* n is a multiple of HOST_LAB_LANES. Planes of n floats one after another: a ray is origin, unit direction, limit (negative:
+ * not cast), 7 planes; a surface is position off the surface, unit face normal, unit shading normal, reflectance, 12 planes. */
+typedef struct host_lab {
+    const char *isa; /* as in runtime/host/programs.c */
+    /* Nearest hit and whether anything is hit; *_of_all: triangle after triangle, without a tree. */
+    void (*nearest)(const host_lab_mesh *m, const float *rays, uint32_t n, float *distance, uint32_t *triangle,
+                    uint32_t *occluded);
+    void (*nearest_of_all)(const host_lab_mesh *m, const float *rays, uint32_t n, float *distance, uint32_t *triangle,
+                           uint32_t *occluded);
+    /* Whether anything is hit, alone. */
+    void (*occluded)(const host_lab_mesh *m, const float *rays, uint32_t n, uint32_t *occluded);
+    /* What the rays find at hits; no textures. */
+    void (*surfaces)(const host_lab_mesh *m, const float *rays, const float *distance, const uint32_t *triangle, uint32_t n,
+                     float *surface);
+    /* Depth slices of view depths, m, counted from scene->slice_first. */
+    void (*slices)(const vit_scene *s, const float *depth, uint32_t n, int32_t *slice);
+    /* Wrapped texture coordinates, 0..1; mode: VIT_WRAP_*. */
+    void (*wrap)(const float *coordinate, uint32_t mode, uint32_t n, float *wrapped);
+} host_lab;
+
+/* The best for this machine; there is always one. */
+const host_lab *host_lab_find(void);
+
+#endif
