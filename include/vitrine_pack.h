@@ -18,7 +18,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 2u
+#define VIT_PACK_VERSION 3u
 #define VIT_PACK_ALIGN 4096u
 
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
