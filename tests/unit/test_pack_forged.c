@@ -15,7 +15,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 3", im->header->version = 3)                                                             \
+    X(header, newer_version, "version 4", im->header->version = 4)                                                             \
     X(header, too_few_sections, "11 sections", im->header->sections = 11)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
