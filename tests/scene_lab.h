@@ -24,6 +24,7 @@ typedef struct scene_lab {
     char folder[64];
     char files[SCENE_LAB_FILES][96]; /* what scene_lab_close() removes */
     size_t file_count;
+    const char *device; /* an option for both programs, with a space first, or NULL */
 } scene_lab;
 
 static inline void scene_lab_open(scene_lab *l) {
@@ -94,10 +95,12 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
 static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
-    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s",
-                   scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet %s%s",
+                   scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options,
+                   l->device ? l->device : "");
     scene_lab_run(l, "vitrine-bake", line);
-    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet", pack, raw);
+    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet%s", pack, raw,
+                   l->device ? l->device : "");
     scene_lab_run(l, "vitrine-play", line);
     struct stat size;
     assert_int_equal(stat(raw, &size), 0);
