@@ -159,6 +159,7 @@ help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
 	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
+	@echo "make numeric  hard cases: the worst error of each against its bound, one table; CSV and plots in build/numeric"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
 	@echo "make deps | all | clean | format     config=release|debug|sanitize"

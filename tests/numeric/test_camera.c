@@ -89,7 +89,7 @@ static void cameras_in_hard_places_show_what_is_there(void **state) {
     }
     for (size_t i = 0; i < sizeof views / sizeof *views; i++)
         look(&views[i], photons, &all);
-    catalogue_none("cameras", "in walls; on vertices; near; far: floats that are none", all.not_finite, 4 * all.pixels,
+    catalogue_none("cameras", "in walls, on vertices, near, far: floats that are none", all.not_finite, 4 * all.pixels,
                    "floats");
     catalogue_none("cameras", "pixels that are neither a wall nor the background where one must be", all.wrong, all.pixels,
                    "pixels");

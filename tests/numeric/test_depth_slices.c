@@ -68,7 +68,7 @@ static void depths_that_are_none_lie_in_the_ends(void **state) {
     host_lab_find()->slices(&s, odd, HOST_LAB_LANES, slice);
     for (uint32_t i = 0; i < HOST_LAB_LANES; i++)
         wrong += slice[i] != expected[i];
-    catalogue_none("depth slices", "0; negative; subnormal and infinite depths not in the end slices", wrong, HOST_LAB_LANES,
+    catalogue_none("depth slices", "0, negative, subnormal and infinite depths not in the end slices", wrong, HOST_LAB_LANES,
                    "depths");
 }
 

@@ -111,8 +111,8 @@ static void the_largest_pictures_are_right_in_all_corners(void **state) {
         free(whole.pixels);
     }
     catalogue_none("framebuffers",
-                   catalogue_whole() ? "7680x4320; 7680x1; 1x4320: pixels unlike those rendered alone"
-                                     : "7680x1; 1x4320: pixels unlike those rendered alone",
+                   catalogue_whole() ? "7680x4320, 7680x1, 1x4320: pixels unlike those rendered alone"
+                                     : "7680x1, 1x4320: pixels unlike those rendered alone",
                    wrong, count, "pixels");
 }
 

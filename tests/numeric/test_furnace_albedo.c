@@ -75,21 +75,21 @@ static double deviation(scene_lab *l, int colour, int bounces) {
 }
 
 static void black_rooms_give_nothing(void **state) {
-    catalogue_row("furnace", "black; 2 and 32 bounces: largest pixel", fmax(deviation(*state, 0, 2), deviation(*state, 0, 32)),
+    catalogue_row("furnace", "black, 2 and 32 bounces: largest pixel", fmax(deviation(*state, 0, 2), deviation(*state, 0, 32)),
                   0, "W/(m2 sr)");
 }
 
 static void white_rooms_keep_all_light(void **state) {
-    catalogue_row("furnace", "white; 2 bounces: mean irradiance against the closed form", deviation(*state, 1, 2), 0.005,
+    catalogue_row("furnace", "white, 2 bounces: mean irradiance against the closed form", deviation(*state, 1, 2), 0.005,
                   "relative");
-    catalogue_row("furnace", "white; 32 bounces: mean irradiance against the closed form", deviation(*state, 1, 32), 0.02,
+    catalogue_row("furnace", "white, 32 bounces: mean irradiance against the closed form", deviation(*state, 1, 32), 0.02,
                   "relative");
 }
 
 static void coloured_rooms_keep_each_channels_share(void **state) {
-    catalogue_row("furnace", "coloured; 8 bounces: mean irradiance against the closed form", deviation(*state, 2, 8), 0.02,
+    catalogue_row("furnace", "coloured, 8 bounces: mean irradiance against the closed form", deviation(*state, 2, 8), 0.02,
                   "relative");
-    catalogue_row("furnace", "coloured; 32 bounces: mean irradiance against the closed form", deviation(*state, 2, 32), 0.02,
+    catalogue_row("furnace", "coloured, 32 bounces: mean irradiance against the closed form", deviation(*state, 2, 32), 0.02,
                   "relative");
 }
 

@@ -65,7 +65,7 @@ static void lights_in_hard_places_give_numbers(void **state) {
             count += (uint64_t)4 * SIZE * SIZE;
             rig_free(&l.r);
         }
-    catalogue_none("lights", "on walls; in corners; at the eye; outside; 0 to 1e9 W: floats that are none", bad, count,
+    catalogue_none("lights", "on walls, in corners, at the eye, outside, 0 to 1e9 W: floats that are none", bad, count,
                    "floats");
 }
 
@@ -151,7 +151,7 @@ static void the_strongest_light_that_is_taken_gives_numbers(void **state) {
     l.camera.exposure = VIT_MAX_EXPOSURE;
     free(frame_of(&l, rig_on_host(), &bad));
     rig_free(&l.r);
-    catalogue_none("lights", "1e15 W/sr a micrometre from a wall; exposure 1e9: floats that are none", bad, 4 * SIZE * SIZE,
+    catalogue_none("lights", "1e15 W/sr a micrometre from a wall, exposure 1e9: floats that are none", bad, 4 * SIZE * SIZE,
                    "floats");
 }
 

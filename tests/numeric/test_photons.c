@@ -100,7 +100,7 @@ static void on_corners_of_clusters(void **state) {
     photons_on_corners(photons, &count, 1u << 12, 0.2f);
     check_photons("on all corners of all clusters", photons, count, 0.2f, 1, 1e-6);
     photons_on_corners(photons, &count, 1u << 12, 1e-6f);
-    check_photons("on all corners of all clusters; radius of 1e-6 m", photons, count, 1e-6f, 1, 1e-6);
+    check_photons("on all corners of all clusters, radius of 1e-6 m", photons, count, 1e-6f, 1, 1e-6);
 }
 
 static void of_a_nanometre_and_of_a_thousand_kilometres(void **state) {
@@ -160,7 +160,7 @@ static void radii_whose_square_is_no_float_are_refused(void **state) {
     (void)state;
     for (int i = 0; i < BAD; i++)
         taken += strstr(verdict(bad[i]).text, "radius") == NULL;
-    catalogue_none("photons", "radii taken of 0; below 0; infinite; or whose square is none", taken, BAD, "radii");
+    catalogue_none("photons", "radii taken of 0, below 0, infinite, or whose square is none", taken, BAD, "radii");
     assert_string_equal(verdict(1e-14f).text, "");
     assert_string_equal(verdict(1e14f).text, "");
 }
