@@ -93,20 +93,16 @@ static inline void rig_photons(rig *r, vit_photon *photons, uint32_t count, floa
 
 /* The pack's bytes; free() them. Scenes that say they have lights and have none get a dark one. */
 static inline void *rig_pack(rig *r, size_t *size) {
-    static vit_light dark;
     vit_scene *s = &r->scene;
     vit_text why = {""};
     void *bytes = NULL;
-    vit_light *lights = r->lights;
-    if ((s->effects & VIT_EFFECT_BIT_LIGHTS) && s->lights == 0) {
-        dark = rig_light(0, 0, 0, 0);
+    const vit_light *lights = r->lights;
+    vit_light *own = NULL;
+    if ((s->effects & VIT_EFFECT_BIT_LIGHTS) && !lights) {
         s->lights = 1;
-    }
-    if (s->lights > 0 && !lights) {
-        assert_int_equal(s->lights, 1);
-        lights = ray_lab_array(s->frames, sizeof *lights);
+        lights = own = ray_lab_array(s->frames, sizeof *own);
         for (uint32_t i = 0; i < s->frames; i++)
-            lights[i] = dark;
+            own[i] = rig_light(0, 0, 0, 0);
     }
     s->triangles = r->mesh.m.triangles;
     s->nodes = r->mesh.tree.node_count;
@@ -129,8 +125,7 @@ static inline void *rig_pack(rig *r, size_t *size) {
     if (pack_assemble(&sections, &bytes, size, &why) != VIT_OK)
         fail_msg("%s", why.text);
     free(golds);
-    if (lights != r->lights)
-        free(lights);
+    free(own);
     return bytes;
 }
 

@@ -14,23 +14,13 @@
  * What remains: in the box, the kernel loses light over edges and takes some from the wall round the corner; both go with
  * radius / width of the room, and nearly cancel. Buckets see all samples of a cluster from one point: corners suffer. Effective
  * areas must mend the edges themselves, with and without zones; so pixels near edges are also measured alone. */
-#include "scene_lab.h"
-#include <math.h>
+#include "furnace_box.h"
 
-#define PI 3.14159265358979
-#define SIDE 64 /* pixels of a frame's edge */
-#define VIEWS 6
-#define FLOATS ((size_t)4 * SIDE * SIDE * VIEWS)
 #define ALBEDO 0.5
 #define BOUNCES 8
 #define POWER 60.0 /* W a channel */
 #define LIST_WITHIN 0.02
 #define BUCKETS_WITHIN 0.05
-
-static const double box_lo[3] = {-1.2, -0.7, -1.5}, box_hi[3] = {1.0, 0.9, 1.3}, eye[3] = {0.1, 0.05, -0.2};
-/* View axis and up of each frame. */
-static const double axis[VIEWS][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-static const double up[VIEWS][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}, {0, 1, 0}};
 
 /* moving: photons are traced while playing; else they are baked. The light moves by a millimetre, so that the six views still
  * see one and the same light. */
@@ -38,37 +28,12 @@ static void write_scene(scene_lab *l, const char *name, const char *mesh, const 
     FILE *f = scene_lab_create(l, name);
     (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"%s\"; } );\n", SIDE,
                   SIDE, VIEWS, mesh);
-    (void)fprintf(f, "camera: { near = 0.1; keys = (");
-    for (int i = 0; i < VIEWS; i++)
-        (void)fprintf(f, "%s{ time = %d.0; fov = 90.0; eye = [%g, %g, %g]; target = [%g, %g, %g]; up = [%g, %g, %g]; }",
-                      i ? ", " : "", i, from[0], from[1], from[2], from[0] + axis[i][0], from[1] + axis[i][1],
-                      from[2] + axis[i][2], up[i][0], up[i][1], up[i][2]);
-    (void)fprintf(f,
-                  "); };\nlights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }",
+    write_views(f, from);
+    (void)fprintf(f, "lights = ( { type = \"point\"; keys = ( { position = [-0.3, 0.2, 0.4]; power = [%.1f, %.1f, %.1f]; }",
                   POWER, POWER, POWER);
     if (moving)
         (void)fprintf(f, ", { time = 5.0; position = [-0.299, 0.2, 0.4]; }");
     (void)fprintf(f, "); } );\nquality: { bounces = %d; tile = 8; };\n", BOUNCES);
-    (void)fclose(f);
-}
-
-static void write_box(scene_lab *l) {
-    static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}};
-    FILE *f = scene_lab_create(l, "box.obj");
-    (void)fprintf(f, "mtllib half.mtl\nusemtl half\n");
-    for (int i = 0; i < 8; i++)
-        (void)fprintf(f, "v %g %g %g\n", i & 4 ? box_hi[0] : box_lo[0], i & 2 ? box_hi[1] : box_lo[1],
-                      i & 1 ? box_hi[2] : box_lo[2]);
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 2; i++) /* normals of the sides, so that none are made smooth */
-            (void)fprintf(f, "vn %d %d %d\n", k == 0 ? 1 - 2 * i : 0, k == 1 ? 1 - 2 * i : 0, k == 2 ? 1 - 2 * i : 0);
-    for (int i = 0; i < 6; i++) {
-        static const int normal[6] = {1, 2, 3, 4, 5, 6};
-        (void)fprintf(f, "f");
-        for (int k = 0; k < 4; k++)
-            (void)fprintf(f, " %d//%d", side[i][k], normal[i]);
-        (void)fprintf(f, "\n");
-    }
     (void)fclose(f);
 }
 
@@ -102,7 +67,7 @@ static int set_up(void **state) {
     (void)fprintf(f, "newmtl half\nKd %g %g %g\n", ALBEDO, ALBEDO, ALBEDO);
     (void)fclose(f);
     static const double centre[3] = {0, 0, 0};
-    write_box(&lab);
+    write_box(&lab, "half");
     write_sphere(&lab, 32);
     write_scene(&lab, "box.cfg", "box.obj", eye, false);
     write_scene(&lab, "box_moving.cfg", "box.obj", eye, true);
@@ -123,50 +88,6 @@ static double analytic(double area) {
     return POWER / area * sum;
 }
 
-static double box_area(void) {
-    const double x = box_hi[0] - box_lo[0], y = box_hi[1] - box_lo[1], z = box_hi[2] - box_lo[2];
-    return 2 * (x * y + y * z + z * x);
-}
-
-/* Solid angle, sr, of a square of 2 / n of the view's width about u, v in -1 .. 1. */
-static double solid_angle(double u, double v, int n) {
-    return 4.0 / (n * n) / pow(1 + u * u + v * v, 1.5);
-}
-
-/* Area of the box's surface that n x n pixels' worth of view i sees about u, v (up), m2. */
-static double seen_area(int i, double u, double v, int n) {
-    const double right[3] = {axis[i][1] * up[i][2] - axis[i][2] * up[i][1], axis[i][2] * up[i][0] - axis[i][0] * up[i][2],
-                             axis[i][0] * up[i][1] - axis[i][1] * up[i][0]};
-    double d[3], length = sqrt(1 + u * u + v * v), t = 1e30, cosine = 1;
-    for (int k = 0; k < 3; k++)
-        d[k] = (axis[i][k] + u * right[k] + v * up[i][k]) / length;
-    for (int k = 0; k < 3; k++)
-        if (fabs(d[k]) > 1e-12) {
-            const double at = ((d[k] > 0 ? box_hi[k] : box_lo[k]) - eye[k]) / d[k];
-            if (at < t) {
-                t = at;
-                cosine = fabs(d[k]);
-            }
-        }
-    return t * t * solid_angle(u, v, n) / cosine;
-}
-
-/* The same of a pixel, summed over PARTS x PARTS points, since edges run through pixels. */
-static double pixel_area(int i, int x, int y) {
-    enum { PARTS = 8 };
-    double sum = 0;
-    for (int k = 0; k < PARTS * PARTS; k++)
-        sum += seen_area(i, (2.0 * (x * PARTS + k % PARTS) + 1) / (SIDE * PARTS) - 1,
-                         1 - (2.0 * (y * PARTS + k / PARTS) + 1) / (SIDE * PARTS), SIDE * PARTS);
-    return sum;
-}
-
-/* Albedo as view samples store it: a square root in 10 bits. */
-static double stored_albedo(void) {
-    const double root = floor(sqrt(ALBEDO) * 1023 + 0.5) / 1023;
-    return root * root;
-}
-
 /* Mean over the box of indirect irradiance, over the analytic one. */
 static double box_ratio(scene_lab *l, const char *scene, const char *options) {
     static float pixels[FLOATS];
@@ -176,7 +97,7 @@ static double box_ratio(scene_lab *l, const char *scene, const char *options) {
         for (int y = 0; y < SIDE; y++)
             for (int x = 0; x < SIDE; x++) {
                 const double a = pixel_area(i, x, y);
-                light += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                light += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo(ALBEDO);
                 area += a;
             }
     if (fabs(area / box_area() - 1) > 2e-3) /* the views see the box once, all of it */
@@ -207,7 +128,8 @@ static double edge_distance(int i, int x, int y) {
     return least;
 }
 
-/* Mean irradiance over the room's mean, in the middle of the walls and in a strip along the edges, where a box has less light. */
+/* Mean irradiance over the room's mean, in the middle of the walls and in a strip along the edges, where a box has less light.
+ */
 typedef struct strips {
     double middle, edges;
 } strips;
@@ -222,7 +144,7 @@ static strips box_strips(scene_lab *l, const char *options, double radius) {
                 const double far = edge_distance(i, x, y), a = pixel_area(i, x, y);
                 if (far >= 0.3 * radius && far < radius)
                     continue;
-                light[far < radius] += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                light[far < radius] += a * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo(ALBEDO);
                 area[far < radius] += a;
             }
     const strips s = {light[0] / area[0] / analytic(box_area()), light[1] / area[1] / analytic(box_area())};
@@ -241,7 +163,7 @@ static double sphere_deviation(scene_lab *l, const char *options) {
         for (int y = 0; y < SIDE; y++)
             for (int x = 0; x < SIDE; x++) {
                 const double angle = solid_angle((2 * x + 1.0) / SIDE - 1, (2 * y + 1.0) / SIDE - 1, SIDE);
-                light += angle * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo();
+                light += angle * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)] * PI / stored_albedo(ALBEDO);
                 whole += angle;
             }
         const double off = light / whole / analytic(4 * PI) - 1;

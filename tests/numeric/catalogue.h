@@ -32,15 +32,26 @@ static inline FILE *catalogue_create(const char *name) {
     return f;
 }
 
+/* A column of text; its commas are written as semicolons. */
+static inline void catalogue_text(FILE *f, const char *text) {
+    for (; *text; text++)
+        (void)fputc(*text == ',' ? ';' : *text, f);
+    (void)fputc(',', f);
+}
+
 /* One row, measured: `worst` of `what` must not exceed `bound` (0: none may be wrong; then `unit` says of how many). The texts
  * hold neither quotes nor commas. A worst that is no number fails. */
 static inline void catalogue_row(const char *hard_case, const char *what, double worst, double bound, const char *unit) {
     static FILE *rows; /* open to the program's end */
     if (!rows) {
         rows = catalogue_create("");
-        (void)fprintf(rows, "case,what,bound,worst,unit\n");
+        (void)fprintf(rows, "case,what,bound,worst,unit,\n");
     }
-    (void)fprintf(rows, "%s,%s,%.9g,%.9g,%s\n", hard_case, what, bound, worst, unit);
+    catalogue_text(rows, hard_case);
+    catalogue_text(rows, what);
+    (void)fprintf(rows, "%.9g,%.9g,", bound, worst);
+    catalogue_text(rows, unit);
+    (void)fputc('\n', rows);
     (void)fflush(rows);
     (void)printf("%-28s %-58s worst %-11.4g bound %-11.4g %s\n", hard_case, what, worst, bound, unit);
     (void)fflush(stdout);
@@ -66,7 +77,9 @@ static inline void catalogue_sweep(const char *name, const char *x_label, const 
     char suffix[96];
     (void)snprintf(suffix, sizeof suffix, ".%s", name);
     FILE *f = catalogue_create(suffix);
-    (void)fprintf(f, "%s,%s\n", x_label, y_label);
+    catalogue_text(f, x_label);
+    catalogue_text(f, y_label);
+    (void)fputc('\n', f);
     for (size_t i = 0; i < count; i++)
         (void)fprintf(f, "%.9g,%.9g\n", points[i].x, points[i].y);
     assert_int_equal(fclose(f), 0);

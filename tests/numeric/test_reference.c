@@ -5,6 +5,7 @@
  * Cornell box by another method (quadrature over areas in double with rays of its own). A frame's pixels lie evenly on a
  * surface (reference_lab.h), so that means over frames are means over surfaces. Each check prints how far off it is, and the
  * noise that the reference itself states, which must be honest too: errors over stated standard errors must be about 1. */
+#include "catalogue.h"
 #include "reference_lab.h"
 #include <stdio.h>
 
@@ -14,7 +15,10 @@ static const float lab_corner[WALLS][3] = {{-1, -1, 1}, {1, -1, -1}, {-1, -1, 1}
 static const float lab_u[WALLS][3] = {{0, 0, -2}, {0, 0, 2}, {2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {-2, 0, 0}};
 static const float lab_v[WALLS][3] = {{0, 2, 0}, {0, 2, 0}, {0, 0, -2}, {0, 0, 2}, {0, 2, 0}, {0, 2, 0}};
 
+static double worst; /* of all that was expected */
+
 static void expect(const char *what, double found, double wanted) {
+    worst = fmax(worst, fabs(found / wanted - 1));
     printf("%-58s %12.6g, wanted %12.6g: %+.3f %%\n", what, found, wanted, 100 * (found / wanted - 1));
     if (!(fabs(found / wanted - 1) < WITHIN))
         fail_msg("%s: %.6g, wanted %.6g", what, found, wanted);
@@ -238,6 +242,12 @@ static void about_geometric_normals_shading_normals_do_not_count_for_indirect_li
     lab_close(&l);
 }
 
+static void the_worst_of_all_is_a_row_of_the_catalogue(void **state) {
+    (void)state;
+    assert_true(worst > 0);
+    catalogue_row("reference", "the path tracer against closed forms", worst, WITHIN, "relative");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_closed_room_has_the_light_that_its_albedo_says),
@@ -245,6 +255,7 @@ int main(void) {
         cmocka_unit_test(one_plate_lights_another_as_their_form_factor_says),
         cmocka_unit_test(the_sides_of_a_corner_light_each_other),
         cmocka_unit_test(about_geometric_normals_shading_normals_do_not_count_for_indirect_light),
+        cmocka_unit_test(the_worst_of_all_is_a_row_of_the_catalogue),
     };
     return cmocka_run_group_tests_name("reference", tests, NULL, NULL);
 }
