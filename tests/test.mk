@@ -39,7 +39,7 @@ JOBS ?= $(shell nproc)
 SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
 LONGEST := $(patsubst %,$(B)/tests/golden/test_%,effects furnace bounds cost bake_twice same_bits work_counts) $(B)/tests/unit/test_zones
 RUNS := $(addprefix run/,$(LONGEST) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
-.PHONY: numeric run-tests run-bench run-sanitized $(RUNS)
+.PHONY: matrix numeric run-tests run-bench run-sanitized $(RUNS)
 test: deps
 	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize run-sanitized
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
@@ -69,6 +69,11 @@ SOAK_FRAMES ?= 20000
 soak: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(B)/tests/golden/test_soak $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	VITRINE_SOAK_FRAMES=$(SOAK_FRAMES) $(B)/tests/golden/test_soak
+# Every way of playing that this machine offers gives the same hashes.
+matrix: deps
+	@$(MAKE) $(SIDE_BY_SIDE) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	@tests/matrix.sh $(B) build/matrix
+
 # The catalogue of hard cases: every numeric test whole, one table of rows, a plot a sweep.
 numeric: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(NUMERIC_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)

@@ -1,0 +1,89 @@
+#!/bin/sh
+# The determinism matrix: every way of playing a pack that this machine offers must give the pack's golden hashes. A line a row: equal, DIFFERS or
+# absent, or refused, which the player does where a device says that it rounds otherwise; exit 4 if any differs.
+#   tests/matrix.sh [folder of the tools, default build/release] [folder for packs and cross builds, default build/matrix]
+# Looked for: PoCL (devices, threads, work-group methods), Intel's OpenCL runtime ($INTEL_OPENCL: folder of libintelocl.so, as pip's intel-opencl-rt
+# unpacks it), Oclgrind, the built-in device host with each instruction set, and cross compilers with qemu-user for other machines.
+set -u
+tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
+mkdir -p "$out" && out=$(cd "$out" && pwd)
+row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
+    name=$1 && shift
+    rows=$((rows + 1))
+    text=$("$@" 2>&1) && echo "equal    $name" && return
+    case $?:$text in
+    *"do not round"*) echo "refused  $name: its floats do not round as the frame's bits need it" ;;
+    4:*) failed=$((failed + 1)); echo "DIFFERS  $name: $text" | head -3 ;;
+    *) failed=$((failed + 1)); echo "FAILED   $name: $text" | head -3 ;;
+    esac
+}
+absent() { echo "absent   $1"; }
+bake() { "$tools/vitrine-bake" "$tools/scenes/$1.cfg" -o "$out/$2.vit" --quiet --device host --frames 2 $3 || exit 1; }
+bake cornell list "--size 128x96 --photons 4000"
+bake cornell zones "--size 100x70 --photons 4000 --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
+bake cornell buckets "--size 97x61 --photons 4000 --estimate buckets --normal-keys 1 --sample-bits 16"
+bake atrium atrium "--size 160x90 --photons 4000 --texture-filter trilinear"
+bake cornell small "--size 17x9 --photons 200 --tile 8"
+
+play="$tools/vitrine-play --verify --quiet"
+for name in list zones buckets atrium; do
+    pack=$out/$name.vit
+    echo "== $name"
+    for device in basic pthread; do
+        for lanes in 1 8 16; do
+            for threads in 1 2; do
+                [ $device$threads != basic2 ] || continue
+                row "PoCL $device, $threads threads, $lanes lanes" env POCL_DEVICES=$device POCL_MAX_PTHREAD_COUNT=$threads $play "$pack" --lanes $lanes
+            done
+        done
+    done
+    for method in loops loopvec; do
+        row "PoCL work-group method $method" env POCL_WORK_GROUP_METHOD=$method POCL_CACHE_DIR="$out/pocl-$method" sh -c "mkdir -p $out/pocl-$method; exec $play $pack"
+    done
+    row "PoCL again" $play "$pack"
+    for isa in baseline avx2 avx512; do
+        for lanes in 1 8 16; do
+            if "$tools/vitrine-play" "$pack" --quiet --explain --device host --host-isa $isa --lanes $lanes >/dev/null 2>&1; then
+                for threads in 1 2 3; do
+                    row "host, $isa, $lanes lanes, $threads threads" $play "$pack" --device host --host-isa $isa --lanes $lanes --threads $threads
+                done
+            else
+                absent "host, $isa, $lanes lanes"
+            fi
+        done
+    done
+done
+
+if [ -n "${INTEL_OPENCL:-}" ]; then
+    mkdir -p "$out/intel-icd" && echo "$INTEL_OPENCL/libintelocl.so" > "$out/intel-icd/intel.icd"
+    for name in list zones buckets atrium; do
+        for lanes in 1 8 16; do
+            row "Intel OpenCL, $name, $lanes lanes" env OCL_ICD_VENDORS="$out/intel-icd" LD_LIBRARY_PATH="$INTEL_OPENCL${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" $play "$out/$name.vit" --device 0 --lanes $lanes
+        done
+    done
+else
+    absent "Intel OpenCL (INTEL_OPENCL is not set)"
+fi
+
+if command -v oclgrind >/dev/null; then
+    row "Oclgrind, small, 1 lane" oclgrind $play "$out/small.vit" --device 0 --lanes 1
+else
+    absent "Oclgrind"
+fi
+
+for machine in aarch64 riscv64; do
+    cc=$machine-linux-gnu-gcc qemu=qemu-$machine-static build=build/$machine
+    if command -v $cc >/dev/null && command -v $qemu >/dev/null; then
+        make --no-print-directory -s OPENCL=0 B="$build" CC=$cc "$build/libvitrine.a" >"$out/$machine.log" 2>&1 &&
+            $cc -O2 -Iinclude tests/matrix/hashes.c "$build/libvitrine.a" -static -lpthread -lm -o "$out/hashes-$machine" >>"$out/$machine.log" 2>&1 || { failed=$((failed + 1)); echo "FAILED   $machine: does not build, see $out/$machine.log"; continue; }
+        for name in list zones buckets atrium; do
+            for lanes in 1 8; do
+                row "$machine under qemu, $name, $lanes lanes" $qemu "$out/hashes-$machine" "$out/$name.vit" $lanes
+            done
+        done
+    else
+        absent "$machine ($cc, $qemu)"
+    fi
+done
+echo "$rows rows, $failed not equal"
+[ $failed = 0 ] || exit 4
