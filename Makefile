@@ -65,7 +65,7 @@ HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-comp
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
-.PHONY: all tools help deps demo run-demo cost run-cost test soak bench clean install format
+.PHONY: all tools help deps fuzz-deps lint-deps demo run-demo cost run-cost test soak bench clean install format
 all: deps
 	@$(MAKE) $(SIDE_BY_SIDE) tools
 tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
@@ -127,6 +127,7 @@ $(B)/make-scenes: $(call obj,$(SCENES))
 
 include tests/test.mk
 include tests/fuzz.mk
+include tests/lint.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
@@ -163,13 +164,11 @@ help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
 	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
-<<<<<<< HEAD
 	@echo "make fuzz     bad packs, scenes and meshes under sanitizers (clang): FUZZ_SECONDS=$(FUZZ_SECONDS) each of FUZZ=\"$(FUZZ)\""
 	@echo "make soak     plays a small pack for SOAK_FRAMES=$(SOAK_FRAMES) frames: same bits, same memory"
-=======
 	@echo "make matrix   same bits: OpenCL devices, threads, lanes, instruction sets, other machines under qemu; one line a row"
 	@echo "make numeric  hard cases: the worst error of each against its bound, one table; CSV and plots in build/numeric"
->>>>>>> 8ed1cec123427255bb7c77e160c136ce5bfd1879
+	@echo "make lint     clang-tidy and cppcheck over our sources"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
 	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz"

@@ -97,6 +97,7 @@ static uint64_t pack_sheet(int width, stbrp_rect *rects, uint32_t count, stbrp_n
         return UINT64_MAX;
     uint64_t height = 0;
     for (uint32_t i = 0; i < count; i++) {
+        /* There are rectangles: `count` is not 0. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
         const uint64_t end = (uint64_t)rects[i].y + (uint64_t)rects[i].h;
         height = end > height ? end : height;
     }

@@ -50,6 +50,7 @@ vit_status cells_divide(const geometry *g, uint32_t triangles, float (*edge)(voi
         return many ? VIT_BAD_INPUT : VIT_FAILED;
     }
     for (uint32_t i = 0; i < sides; i++) {
+        /* Without `edges` there are no sides, and this is not reached. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
         const uint32_t parts = parts_of(g, i, edges[i] * scale);
         out->sides[i] = parts << VIT_SIDE_PARTS_SHIFT | out->count;
         for (uint32_t k = 0; k < parts * parts; k++)

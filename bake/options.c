@@ -1,5 +1,6 @@
 #include "options.h"
 #include "fields.h"
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +21,8 @@ static bool whole(const char *text, long least, long most, long *out) {
 
 static bool size_of(const char *text, int *width, int *height) {
     char end;
-    return text && sscanf(text, "%dx%d%c", width, height, &end) == 2 && *width >= 1 && *width <= 7680 && *height >= 1 && *height <= 4320;
+    /* Four digits do not overflow. NOLINTNEXTLINE(cert-err34-c) */
+    return text && sscanf(text, "%4dx%4d%c", width, height, &end) == 2 && *width >= 1 && *width <= 7680 && *height >= 1 && *height <= 4320;
 }
 
 static bool radius_of(const char *text, options *o) {
@@ -71,8 +73,11 @@ static bool among(const char *name, const char *value, options *o, bool *known, 
         if (strcmp(name, lists[i].name) == 0) {
             *known = true;
             *wants = lists[i].wants;
-            *lists[i].to = value ? atoi(value) : 0;
-            return fields_place(lists[i].list, value) >= 0;
+            long number = 0;
+            if (fields_place(lists[i].list, value) < 0 || !whole(value, 0, INT_MAX, &number))
+                return false;
+            *lists[i].to = (int)number;
+            return true;
         }
     return *known = false;
 }

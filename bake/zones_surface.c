@@ -78,6 +78,7 @@ static bool find_near(zones *z, nearness *n) {
             n->at[n->count++] = cells_center(z->c, z->g, i);
     if (!grid_make(&n->g, n->at, sizeof *n->at, n->count, z->radius))
         return false;
+    /* The caller frees what `n` holds, whatever is returned. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
     for (uint32_t i = 0; i < z->c->count; i++) {
         const uint32_t mine = z->patch_of[i];
         if (mine == VIT_NONE || n->near[mine] || n->count == 0)

@@ -67,7 +67,8 @@ static bool read_number(const char *text, bool whole, const option *row, double 
 
 static bool read_size(const char *text, int *size) {
     char end;
-    return sscanf(text, "%dx%d%c", &size[0], &size[1], &end) == 2 && size[0] >= 1 && size[0] <= 7680 && size[1] >= 1 &&
+    /* Four digits do not overflow. NOLINTNEXTLINE(cert-err34-c) */
+    return sscanf(text, "%4dx%4d%c", &size[0], &size[1], &end) == 2 && size[0] >= 1 && size[0] <= 7680 && size[1] >= 1 &&
            size[1] <= 4320;
 }
 

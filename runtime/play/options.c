@@ -76,6 +76,7 @@ static vit_status apply(const option *row, play_options *o, const char *value, v
         return VIT_OK;
     }
     uint32_t n;
+    /* Rows that take a value have been given one. NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker) */
     if (!option_number(value, value + strlen(value), &n) || n < row->least || n > row->most)
         return play_fail(why, VIT_USAGE, "--%s takes a number from %u to %u, got '%s'", row->name, row->least, row->most,
                          value);

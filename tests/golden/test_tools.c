@@ -68,6 +68,7 @@ static void the_baker_refuses_options_that_it_does_not_know(void **state) {
 static void the_baker_refuses_values_out_of_range(void **state) {
     (void)state;
     bake_refuses("scene.cfg --size 640" OUT, VIT_USAGE, "WIDTHxHEIGHT");
+    bake_refuses("scene.cfg --size 4294968576x720" OUT, VIT_USAGE, "WIDTHxHEIGHT"); /* 2^32 + 1280 */
     bake_refuses("scene.cfg --size 0x10" OUT, VIT_USAGE, "WIDTHxHEIGHT");
     bake_refuses("scene.cfg --frames 0" OUT, VIT_USAGE, "--frames");
     bake_refuses("scene.cfg --photons -1" OUT, VIT_USAGE, "--photons");
