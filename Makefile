@@ -163,13 +163,10 @@ help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"
 	@echo "make cost     what accuracy costs in time, for our scenes; reports in build/cost"
 	@echo "make test     all tests"
-<<<<<<< HEAD
 	@echo "make fuzz     bad packs, scenes and meshes under sanitizers (clang): FUZZ_SECONDS=$(FUZZ_SECONDS) each of FUZZ=\"$(FUZZ)\""
 	@echo "make soak     plays a small pack for SOAK_FRAMES=$(SOAK_FRAMES) frames: same bits, same memory"
-=======
 	@echo "make matrix   same bits: OpenCL devices, threads, lanes, instruction sets, other machines under qemu; one line a row"
 	@echo "make numeric  hard cases: the worst error of each against its bound, one table; CSV and plots in build/numeric"
->>>>>>> 8ed1cec123427255bb7c77e160c136ce5bfd1879
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
 	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz"
