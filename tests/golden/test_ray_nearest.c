@@ -140,33 +140,13 @@ static void check_trees(const ray_mesh *r, const ray_set *s) {
     hits_free(&all);
 }
 
-/* Rays in the plane of a triangle, up to roundings: from beyond one of its vertices to a point on the opposite edge, or along
- * an edge. The distance is then 0 / 0 but for roundings, and only its clamping to the triangle's box keeps it from being
- * anything. */
-static ray_set rays_in_planes(const ray_mesh *r) {
-    ray_set s = rays_new(FEW);
-    uint64_t state = 17;
-    for (uint32_t i = 0; i < s.n; i++) {
-        const vit_triangle *t = r->packed.triangles + lab_random(&state) % r->m.triangles;
-        const float along = i % 3 ? lab_uniform(&state) : (float)(i % 2), back = 6 * lab_uniform(&state);
-        float o[3], d[3];
-        for (int k = 0; k < 3; k++)
-            d[k] = t->v1[k] + along * (t->v2[k] - t->v1[k]) - t->v0[k];
-        unit_float(d);
-        for (int k = 0; k < 3; k++)
-            o[k] = t->v0[k] - back * d[k];
-        rays_set(&s, i, o, d, i % 5 == 0 ? 5.0f : RAY_FAR);
-    }
-    return s;
-}
-
 static void rays_in_the_planes_of_triangles_hit_the_same_through_any_tree(void **state) {
     ray_mesh r;
     (void)state;
     make_lattice(&r, 60);
     turn(&r);
     mesh_bake(&r);
-    ray_set s = rays_in_planes(&r);
+    ray_set s = rays_in_planes(&r, FEW);
     check_trees(&r, &s);
     free(s.plane);
     mesh_free(&r);

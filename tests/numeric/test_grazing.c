@@ -88,7 +88,7 @@ static void across_the_surface_no_angle_is_worse_than_another(void **state) {
                      degrees[i], w.across, w.along);
         across = fmax(across, w.across);
     }
-    catalogue_sweep("grazing", "1 / cosine", "distance wrong along the ray (m)", along, ANGLES);
+    catalogue_sweep("angle", "1 / cosine", "distance wrong along the ray (m)", along, ANGLES);
     catalogue_row("grazing rays", "0 to 89.99 degrees: distance wrong across the surface", across, 0x1p-22,
                   "of the largest coordinate");
     mesh_free(&r);

@@ -140,7 +140,7 @@ static void the_aspect_does_not_matter(void **state) {
         const thin_result v = try_width(width);
         p[n++] = (catalogue_point){1 / width, v.across};
     }
-    catalogue_sweep("slivers", "aspect", "distance wrong across the surface (of the largest coordinate)", p, n);
+    catalogue_sweep("aspect", "aspect", "distance wrong across the surface (of the largest coordinate)", p, n);
 }
 
 int main(void) {
