@@ -8,13 +8,13 @@ set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
 mkdir -p "$out" && out=$(cd "$out" && pwd)
 row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
-    name=$1 && shift
+    label=$1 && shift
     rows=$((rows + 1))
-    text=$("$@" 2>&1) && echo "equal    $name" && return
-    case $?:$text in
-    *"do not round"*) echo "refused  $name: its floats do not round as the frame's bits need it" ;;
-    4:*) failed=$((failed + 1)); echo "DIFFERS  $name: $text" | head -3 ;;
-    *) failed=$((failed + 1)); echo "FAILED   $name: $text" | head -3 ;;
+    text=$("$@" 2>&1) && echo "equal    $label" && return
+    case $?:$text in # the status of what played
+    *"do not round"*) echo "refused  $label: its floats do not round as the frame's bits need it" ;;
+    4:*) failed=$((failed + 1)); echo "DIFFERS  $label: $text" | head -3 ;;
+    *) failed=$((failed + 1)); echo "FAILED   $label: $text" | head -3 ;;
     esac
 }
 absent() { echo "absent   $1"; }

@@ -64,7 +64,7 @@ static const struct {
 static const struct {
     const char *name, *input, *options;
 } test_packs[] = {
-#define PLAIN "--zones 0 --effective-area 0 --bounce-sequence 0 "
+#define PLAIN "--zones 0 --effective-area 0 --bounce-sequence 0 --indirect-samples 1 "
 #define CORNELL TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000 " PLAIN
     {"list", CORNELL "--all-formats"},
     {"buckets", CORNELL "--all-formats --estimate buckets"},
@@ -104,8 +104,8 @@ static const struct {
 #undef PLAIN
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
     {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},
-    {"atrium", TEST_SCENES "/atrium.cfg", "--size 256x144 --frames 2"},
-    {"whole-tiles", TEST_SCENES "/cornell.cfg", "--size 160x128 --frames 4 --photons 5000"},
+    {"atrium", TEST_SCENES "/atrium.cfg", "--size 256x144 --frames 2 --indirect-samples 1"},
+    {"whole-tiles", TEST_SCENES "/cornell.cfg", "--size 160x128 --frames 4 --photons 5000 --indirect-samples 1"},
 };
 enum { TEST_PACK_COUNT = sizeof test_packs / sizeof test_packs[0] };
 
