@@ -156,6 +156,13 @@ static void automatic_view(const scene *s, const model *m, int frame, view *v) {
 }
 
 /* Above the box and before it as the camera sees it, 36 degrees ahead on its way round: what the camera looks at is lit. */
+/* Its light would be stronger than a pack holds. */
+static bool too_large_for_automatic(const model *m) {
+    double center[3];
+    const double radius = box_center(m, center);
+    return !(automatic_irradiance * (1.6 * 1.6 + 1.1 * 1.1) * radius * radius <= (double)VIT_MAX_INTENSITY);
+}
+
 static void automatic_light(const scene *s, const model *m, int frame, scene_light_key *key) {
     const double radius = box_center(m, key->position);
     const double angle = 2.0 * PI * (double)frame / (double)s->frames + PI / 5.0;
@@ -183,6 +190,8 @@ static vit_status make_cameras(const scene *s, const model *m, tracks *out, vit_
             return VIT_FAILED;
         }
     }
+    if (s->automatic && too_large_for_automatic(m))
+        return refuse(s, 0, why, "the mesh is more than 1e7 m across: place it with a 'scale' in a scene file");
     vit_status status = VIT_OK;
     for (int f = 0; f < s->frames && status == VIT_OK; f++) {
         if (s->automatic)

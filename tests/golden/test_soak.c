@@ -19,13 +19,18 @@ static unsigned frames_wanted(void) {
     return (unsigned)(wanted / FRAMES * FRAMES);
 }
 
+static const char *device(void) {
+    const char *wanted = getenv("VITRINE_SOAK_DEVICE");
+    return wanted ? wanted : "host";
+}
+
 static void bake(void) {
     static tool_run r;
     test_packs_begin();
-    tool(&r, TOOL_BAKE " " TEST_PACKS "/room.cfg -o " PACK " --quiet --size %dx%d --frames %d --photons 200", WIDTH, HEIGHT,
-         FRAMES);
+    tool(&r, TOOL_BAKE " " TEST_PACKS "/room.cfg -o " PACK " --quiet --size %dx%d --frames %d --photons 200 --device host",
+         WIDTH, HEIGHT, FRAMES);
     tool_succeeds(&r);
-    tool(&r, TOOL_PLAY " " PACK " --verify --quiet"); /* kernels are compiled now */
+    tool(&r, TOOL_PLAY " " PACK " --verify --quiet --device %s", device()); /* kernels are compiled now */
     tool_succeeds(&r);
 }
 
@@ -41,7 +46,8 @@ static pid_t begin_player(unsigned frames, int *from, FILE *to_err) {
         (void)dup2(fileno(to_err), STDERR_FILENO);
         (void)close(ends[0]);
         (void)close(ends[1]);
-        (void)execl(TOOL_PLAY, TOOL_PLAY, PACK, "--verify", "--quiet", "--out", "raw:-", "--loop", loop, (char *)NULL);
+        (void)execl(TOOL_PLAY, TOOL_PLAY, PACK, "--verify", "--quiet", "--out", "raw:-", "--loop", loop, "--device", device(),
+                    (char *)NULL);
         _exit(127);
     }
     (void)close(ends[1]);

@@ -362,6 +362,19 @@ static void the_automatic_camera_sees_the_whole_box_from_all_around(void **state
     }
 }
 
+static void a_mesh_too_large_for_a_light_that_a_pack_holds_is_refused(void **state) {
+    setting x;
+    (void)state;
+    set_automatic(&x, 200, 100);
+    x.m.hi[0] = x.m.lo[0] + 1.0e7;
+    evaluate(&x);
+    for (int f = 0; f < x.s.frames; f++)
+        assert_true(x.t.lights[f].intensity[0] <= VIT_MAX_INTENSITY);
+    tracks_free(&x.t);
+    x.m.hi[0] = x.m.lo[0] + 1.1e7;
+    refuse(&x, "test.cfg: the mesh is more than 1e7 m across: place it with a 'scale' in a scene file");
+}
+
 static void the_automatic_light_moves_and_gives_10_watts_a_square_metre(void **state) {
     setting x;
     (void)state;
@@ -410,6 +423,7 @@ int main(void) {
         T(a_light_may_come_from_the_mesh),
         T(a_spot_light_that_meets_its_target_is_refused),
         T(the_automatic_camera_sees_the_whole_box_from_all_around),
+        T(a_mesh_too_large_for_a_light_that_a_pack_holds_is_refused),
         T(the_automatic_light_moves_and_gives_10_watts_a_square_metre),
         T(evaluating_twice_gives_the_same_bytes),
     };
