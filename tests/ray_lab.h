@@ -111,6 +111,29 @@ static inline void mesh_cube(ray_mesh *r, int n, mesh_place_fn *place) {
     }
 }
 
+/* Closed meshes about (3, -2, 5), as places for mesh_cube(). */
+static inline void place_ball(float p[3]) {
+    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], r = 10 / sqrt(x * x + y * y + z * z);
+    p[0] = (float)(x * r + 3);
+    p[1] = (float)(y * r - 2);
+    p[2] = (float)(z * r + 5);
+}
+
+static inline void place_box(float p[3]) {
+    p[0] = p[0] * 7.3f + 3;
+    p[1] = p[1] * 4.1f - 2;
+    p[2] = p[2] * 9.7f + 5;
+}
+
+/* Spikes that hide one another; the centre sees all of it. */
+static inline void place_crumpled(float p[3]) {
+    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], l = sqrt(x * x + y * y + z * z);
+    const double r = (8 + 3 * sin(57 * x / l) * sin(61 * y / l + 1) * sin(53 * z / l + 2)) / l;
+    p[0] = (float)(x * r + 3);
+    p[1] = (float)(y * r - 2);
+    p[2] = (float)(z * r + 5);
+}
+
 static inline void mesh_bake(ray_mesh *r) {
     vit_text why;
     if (bvh_build(&r->m, 0, &r->tree, &why) != VIT_OK || geometry_pack(&r->m, &r->tree, &r->packed, &why) != VIT_OK)

@@ -10,28 +10,6 @@
 #define RAYS (1u << 20)
 #define FEW (1u << 16)
 
-static void ball(float p[3]) {
-    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], r = 10 / sqrt(x * x + y * y + z * z);
-    p[0] = (float)(x * r + 3);
-    p[1] = (float)(y * r - 2);
-    p[2] = (float)(z * r + 5);
-}
-
-static void box(float p[3]) {
-    p[0] = p[0] * 7.3f + 3;
-    p[1] = p[1] * 4.1f - 2;
-    p[2] = p[2] * 9.7f + 5;
-}
-
-/* Spikes that hide one another; the centre sees all of it. */
-static void crumpled(float p[3]) {
-    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], l = sqrt(x * x + y * y + z * z);
-    const double r = (8 + 3 * sin(57 * x / l) * sin(61 * y / l + 1) * sin(53 * z / l + 2)) / l;
-    p[0] = (float)(x * r + 3);
-    p[1] = (float)(y * r - 2);
-    p[2] = (float)(z * r + 5);
-}
-
 /* Origins in a cube of the given half edge around the mesh's middle. Of four rays one goes to a vertex, one to the middle of an
  * edge, two anywhere. */
 static ray_set rays_from_inside(const ray_mesh *r, uint32_t count, float half) {
@@ -73,17 +51,17 @@ static void check_closed(mesh_place_fn *place, int squares, uint32_t rays, float
 
 static void no_ray_leaves_a_closed_ball(void **state) {
     (void)state;
-    check_closed(ball, 96, RAYS, 5);
+    check_closed(place_ball, 96, RAYS, 5);
 }
 
 static void no_ray_leaves_a_closed_box(void **state) {
     (void)state;
-    check_closed(box, 64, RAYS, 4);
+    check_closed(place_box, 64, RAYS, 4);
 }
 
 static void no_ray_leaves_a_crumpled_ball(void **state) {
     (void)state;
-    check_closed(crumpled, 96, RAYS / 4, 0.5f);
+    check_closed(place_crumpled, 96, RAYS / 4, 0.5f);
 }
 
 /* Origins on the lattice's points, lines, planes and off them; directions along axes, diagonals, planes, at lattice points and

@@ -9,27 +9,6 @@
 
 #define BATCH (1u << 16)
 
-static void ball(float p[3]) {
-    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], r = 10 / sqrt(x * x + y * y + z * z);
-    p[0] = (float)(x * r + 3);
-    p[1] = (float)(y * r - 2);
-    p[2] = (float)(z * r + 5);
-}
-
-static void box(float p[3]) {
-    p[0] = p[0] * 7.3f + 3;
-    p[1] = p[1] * 4.1f - 2;
-    p[2] = p[2] * 9.7f + 5;
-}
-
-static void crumpled(float p[3]) {
-    const double x = (double)p[0], y = (double)p[1], z = (double)p[2], l = sqrt(x * x + y * y + z * z);
-    const double r = (8 + 3 * sin(57 * x / l) * sin(61 * y / l + 1) * sin(53 * z / l + 2)) / l;
-    p[0] = (float)(x * r + 3);
-    p[1] = (float)(y * r - 2);
-    p[2] = (float)(z * r + 5);
-}
-
 /* Whole numbers: every aim is exact. */
 static void lattice(float p[3]) {
     p[0] = p[0] * 64 + 3;
@@ -79,12 +58,12 @@ static void check_closed(const char *what, mesh_place_fn *place, int squares, fl
 
 static void no_ray_leaves_a_ball(void **state) {
     (void)state;
-    check_closed("rays out of a ball", ball, 64, 5);
+    check_closed("rays out of a ball", place_ball, 64, 5);
 }
 
 static void no_ray_leaves_a_box(void **state) {
     (void)state;
-    check_closed("rays out of a box", box, 48, 4);
+    check_closed("rays out of a box", place_box, 48, 4);
 }
 
 static void no_ray_leaves_a_box_on_whole_numbers(void **state) {
@@ -94,7 +73,7 @@ static void no_ray_leaves_a_box_on_whole_numbers(void **state) {
 
 static void no_ray_leaves_a_crumpled_ball(void **state) {
     (void)state;
-    check_closed("rays out of a crumpled ball", crumpled, 64, 0.5f);
+    check_closed("rays out of a crumpled ball", place_crumpled, 64, 0.5f);
 }
 
 int main(void) {

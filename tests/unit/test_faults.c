@@ -1,5 +1,5 @@
-/* The fault log: none in an exact bake, one a frame for each bound that was too small, the latest when there are too many, and a
- * device that fails; read back without disturbing the frames. */
+/* The fault log: none in an exact bake, one a frame for each bound that was too small, the latest when there are too many, and
+ * a device that fails; read back without disturbing the frames. */
 #include "open_pack.h"
 #include "vit.h"
 
@@ -105,12 +105,27 @@ static void the_player_prints_them_at_exit(void **state) {
     assert_non_null(strstr(r.err, "warning: frame 1, splat_place: photons were left out"));
 }
 
+static void every_pass_that_notices_faults_is_one_of_the_frame(void **state) {
+    (void)state;
+#define X(name, level, pass, meaning) pass,
+    static const char *const passes[] = {VIT_FAULTS(X)};
+#undef X
+    for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++) {
+        int found = passes[i] == NULL;
+        for (uint32_t p = 0; p < vit_pass_count; p++)
+            found |= passes[i] != NULL && strcmp(passes[i], vit_passes[p].name) == 0;
+        if (!found)
+            fail_msg("there is no pass '%s'", passes[i]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_exact_bake_has_no_fault),
         cmocka_unit_test(what_a_bound_drops_is_noted_with_frame_pass_and_count),
         cmocka_unit_test(of_too_many_the_latest_are_kept),
         cmocka_unit_test(a_device_that_fails_is_noted_with_its_pass),
+        cmocka_unit_test(every_pass_that_notices_faults_is_one_of_the_frame),
         cmocka_unit_test(the_player_prints_them_at_exit),
     };
     return cmocka_run_group_tests_name("faults", tests, NULL, NULL);
