@@ -84,6 +84,7 @@ typedef struct vit_open_info {
     uint32_t device;           /* index as vit_device_name() counts; 0: the first of OpenCL; VIT_DEVICE_HOST */
     uint32_t threads;          /* VIT_DEVICE_HOST: 1 to 256; 0: one a processor. Changes no bit */
     const char *host_isa;      /* VIT_DEVICE_HOST: "baseline" or, on x86-64, "avx2", "avx512"; NULL: the best. Changes no bit (tests) */
+    uint32_t wide_divide;      /* OpenCL, 1: floats are divided as doubles also where the device rounds rightly by itself. Changes no bit (tests) */
     uint32_t lanes;            /* samples a work-item: 1, 8 or 16; 0: what suits the device. Changes no bit */
     uint32_t group;            /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
     vit_format format;

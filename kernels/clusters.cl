@@ -19,7 +19,7 @@ static inline uint key_spread(global const vit_scene *scene, uint axis, uint bit
 /* Depth slice of view depth z, counted from slice_first. METHODS.md P (2.6). */
 static inline li cluster_slice(global const vit_scene *scene, lf z)
 {
-    lf k = floor(l_log2(l_max(z, L_F(scene->slice_near)) / scene->slice_near) * scene->slice_scale);
+    lf k = floor(l_log2(l_div(l_max(z, L_F(scene->slice_near)), scene->slice_near)) * scene->slice_scale);
     return L_TRUNC(l_min(k, L_F(8191.0f))) - (int)scene->slice_first;
 }
 
@@ -29,7 +29,7 @@ static inline li cluster_direction(lv3 n)
     lf ax = fabs(n.x), ay = fabs(n.y), az = fabs(n.z);
     li on_x = L_GE(ax, ay) & L_GE(ax, az), on_y = ~on_x & L_GE(ay, az);
     lf major = l_sel(on_x, n.x, l_sel(on_y, n.y, n.z)), u = l_sel(on_x, n.y, n.x), v = l_sel(on_x | on_y, n.z, n.y);
-    lf scale = 1.5f / l_max(fabs(major), L_F(1e-9f));
+    lf scale = l_div(1.5f, l_max(fabs(major), L_F(1e-9f)));
     li iu = min(L_TRUNC(fma(u, scale, L_F(1.5f))), L_I(2)), iv = min(L_TRUNC(fma(v, scale, L_F(1.5f))), L_I(2));
     li face = l_sel_i(on_x, L_I(0), l_sel_i(on_y, L_I(2), L_I(4))) + (L_LT(major, L_F(0)) & 1);
     return face * 9 + iv * 3 + iu;

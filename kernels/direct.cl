@@ -15,12 +15,12 @@ static inline lf light_cone(global const vit_light *light, lv3 l)
 static inline lf light_falloff(global const vit_light *light, lf d2)
 {
     if (!VIT_EFFECT_RANGE)
-        return 1.0f / d2;
+        return l_div(1.0f, d2);
     lf q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return l_max(1.0f - q, L_F(0));
     lf window = l_max(1.0f - q * q, L_F(0));
-    return window * window / d2;
+    return l_div(window * window, d2);
 }
 
 #if VIT_WITH(LIGHTS)
@@ -39,8 +39,8 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
         lv3 to = lv3_sub(lv3_load(light->position), p);
-        lf d2 = l_max(lv3_dot(to, to), L_F(1e-12f)), d = sqrt(d2);
-        lv3 l = lv3_scale(to, 1.0f / d);
+        lf d2 = l_max(lv3_dot(to, to), L_F(1e-12f)), d = l_sqrt(d2);
+        lv3 l = lv3_scale(to, l_div(1.0f, d));
         lf e = l_max(lv3_dot(s, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
         li lit = hit & L_GT(e, L_F(0));
         if (!l_any(lit))

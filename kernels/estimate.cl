@@ -135,7 +135,7 @@ static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sa
             uint face = b / 9;
             float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
             float dx = face < 2 ? sign : u, dy = face < 2 ? u : face < 4 ? sign : v, dz = face < 4 ? v : sign;
-            float unit = 1.0f / sqrt(fma(dz, dz, fma(dy, dy, dx * dx)));
+            float unit = vit_div(1.0f, vit_sqrt(fma(dz, dz, fma(dy, dy, dx * dx))));
             lf w = 2.0f * l_max(lv3_dot(s, lv3_set(L_F(dx * unit), L_F(dy * unit), L_F(dz * unit))), L_F(0));
             sum = lv3_along(sum, lv3_load(power), w);
         }
@@ -165,10 +165,10 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
     li rest = L_GE(key, L_I(0));
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     global const vit_camera *camera = cameras + frame;
-    lf edge = L_F(1.0f / (float)scene->tile);
+    lf edge = L_F(vit_div(1.0f, (float)scene->tile));
     lf fx = fma(L_FROM_INT(x) + 0.5f, edge, L_F(-0.5f)), fy = fma(L_FROM_INT(y) + 0.5f, edge, L_F(-0.5f));
     lf depth = l_max(lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), L_F(scene->slice_near));
-    lf fz = l_log2(depth / scene->slice_near) * scene->slice_scale - (float)scene->slice_first - 0.5f;
+    lf fz = l_log2(l_div(depth, scene->slice_near)) * scene->slice_scale - (float)scene->slice_first - 0.5f;
     fz = l_min(l_max(fz, L_F(-0.5f)), L_F((float)scene->slice_count - 0.5f));
     lf ix = floor(fx), iy = floor(fy), iz = floor(fz);
     fx -= ix;
@@ -177,7 +177,7 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
     li x0 = L_TRUNC(ix), y0 = L_TRUNC(iy), z0 = L_TRUNC(iz);
     /* A tile's width at the sample: clusters farther than that from the tangent plane hardly count. */
     lv3 pixel = lv3_load(camera->right);
-    lf cell = depth * (sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
+    lf cell = depth * (l_sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
     while (l_any(rest)) {
         /* Lanes between the same tile centres and slices, and with the same direction bits in their keys. */
         int z = l_reduce_max(l_sel_i(rest, z0, L_I(-1000000)));
@@ -206,13 +206,13 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
             WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
             splat_box box = splat_node(bounds, max_nodes, cluster);
             lv3 c = lv3_set(L_F(0.5f * (box.lo[0] + box.hi[0])), L_F(0.5f * (box.lo[1] + box.hi[1])), L_F(0.5f * (box.lo[2] + box.hi[2])));
-            lf off = lv3_dot(lv3_sub(c, p), s) / cell;
+            lf off = l_div(lv3_dot(lv3_sub(c, p), s), cell);
             lf w = l_max(1.0f - off * off, L_F(0.01f));
             w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
             sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
             weights += w;
         }
-        lf scale = l_sel(L_GT(weights, L_F(0)), 1.0f / l_max(weights, L_F(1e-20f)), L_F(0));
+        lf scale = l_sel(L_GT(weights, L_F(0)), l_div(1.0f, l_max(weights, L_F(1e-20f))), L_F(0));
         total = lv3_sel(own, estimate_normalise(sample, lv3_scale(sum, scale)), total);
     }
     return total;

@@ -16,7 +16,7 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lf *we
     lf u = (L_FROM_INT(L_AS_INT(l_even_bits(curve))) + l_unit_float(l_pcg(r))) * (1.0f / 65536.0f);
     lf v = (L_FROM_INT(L_AS_INT(l_even_bits(curve >> 1))) + l_unit_float(l_pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
     /* Uniform over the cone cos >= cos_outer, about the axis. */
-    lf c = fma(u, L_F(light->cos_outer - 1.0f), L_F(1)), s = sqrt(l_max(1.0f - c * c, L_F(0))), sp, cp;
+    lf c = fma(u, L_F(light->cos_outer - 1.0f), L_F(1)), s = l_sqrt(l_max(1.0f - c * c, L_F(0))), sp, cp;
     l_sincos_turn(v, &sp, &cp);
     lv3 axis = light->kind == VIT_LIGHT_SPOT ? lv3_load(light->direction) : lv3_set(L_F(0), L_F(1), L_F(0));
     ray_packet frame = ray_make(axis, axis);
@@ -28,7 +28,7 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lf *we
 /* Cosine-distributed direction about n from two random numbers. */
 static inline lv3 photon_bounce(lv3 n, lf a, lf b)
 {
-    lf s = sqrt(a), c = sqrt(l_max(1.0f - a, L_F(0))), sp, cp;
+    lf s = l_sqrt(a), c = l_sqrt(l_max(1.0f - a, L_F(0))), sp, cp;
     l_sincos_turn(b, &sp, &cp);
     ray_packet frame = ray_make(n, n);
     return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
@@ -58,7 +58,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
 {
     float v[12 * VIT_LANES];
     uint zones[VIT_LANES];
-    float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * VIT_INV_PI * inv;
+    float r2 = radius * radius, inv = vit_div(1.0f, r2), scale = 2.0f * VIT_INV_PI * inv;
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     p = lv3_sel(valid, p, zero);
     d = lv3_sel(valid, d, zero);
@@ -110,7 +110,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         lf weight;
         o = lv3_load(light->position);
         d = photon_emission(light, path, &weight);
-        lf share = weight * (2.0f * VIT_PI * (1.0f - light->cos_outer) / (float)light->path_count);
+        lf share = weight * vit_div(2.0f * VIT_PI * (1.0f - light->cos_outer), (float)light->path_count);
         power = lv3_scale(lv3_load(light->intensity), share);
         alive = L_LT(path, L_U(light->path_first + light->path_count)) & L_GT(share, L_F(0));
     }

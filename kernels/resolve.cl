@@ -110,9 +110,9 @@ static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside
         if (dot > 0) {
             global const vit_photon *p = photons + dot - 1;
             float top = vit_max(vit_max(p->power[0], p->power[1]), vit_max(p->power[2], 1e-30f));
-            r[i] = p->power[0] / top;
-            g[i] = p->power[1] / top;
-            b[i] = p->power[2] / top;
+            r[i] = vit_div(p->power[0], top);
+            g[i] = vit_div(p->power[1], top);
+            b[i] = vit_div(p->power[2], top);
         }
     }
     return lv3_set(L_LOAD(r), L_LOAD(g), L_LOAD(b));
@@ -154,7 +154,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         display = 1;
     }
     if (view == VIEW_DEPTH) {
-        lf near = L_F(8.0f * scene->slice_near), shown = near / (near + L_LOAD(hit_distance + first));
+        lf near = L_F(8.0f * scene->slice_near), shown = l_div(near, near + L_LOAD(hit_distance + first));
         c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
         display = 1;
     }
@@ -199,11 +199,11 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
     }
     if (!(z > 0))
         return;
-    float px = a / (right2 * z) + 0.5f * (float)scene->width, py = b / (down2 * z) + 0.5f * (float)scene->height;
+    float px = vit_div(a, right2 * z) + 0.5f * (float)scene->width, py = vit_div(b, down2 * z) + 0.5f * (float)scene->height;
     if (!(px >= 0) || !(py >= 0) || !(px < (float)scene->width - 1) || !(py < (float)scene->height - 1))
         return;
     uint x = (uint)px, y = (uint)py;
-    if (sqrt(d2) > hit_distance[sample_at(scene, x, y)] * 1.01f)
+    if (vit_sqrt(d2) > hit_distance[sample_at(scene, x, y)] * 1.01f)
         return;
     for (uint k = 0; k < 4; k++)
         atomic_max(dots + (size_t)(y + k / 2) * scene->width + x + k % 2, i + 1);

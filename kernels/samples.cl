@@ -18,7 +18,7 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
         lv3 eye = lv3_load(camera->eye), d = l_camera_ray(camera, x, y);
         lf t = l_sel(hit, L_LOAD(hit_distance + first), L_F(1));
         float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
-        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, L_F(sqrt(fma(rz, rz, fma(ry, ry, rx * rx)))));
+        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, L_F(vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx)))));
         WORK_LANES(texture_fetches, s.textured);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);

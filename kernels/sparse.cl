@@ -171,7 +171,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
     if (block >= n / 16)
         return;
     global const vit_camera *camera = cameras + frame;
-    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2], step = (float)SPARSE_STEP * sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
+    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2], step = (float)SPARSE_STEP * vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
     uint shift = 29u - (uint)clz(scene->tile), tile = block >> (2 * shift), in_tile = block & ((1u << (2 * shift)) - 1);
     uint bx = ((tile % scene->tiles_x) << shift) + (in_tile & ((1u << shift) - 1)), by = ((tile / scene->tiles_x) << shift) + (in_tile >> shift);
     uint around[4];
@@ -182,7 +182,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
-        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = 1.0f / l_max(depth * step, L_F(1e-30f));
+        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
         lf weights = L_F(0), x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
@@ -200,7 +200,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
                 weights += w;
             }
         li good = has & L_GE(weights, L_F(SPARSE_LEAST));
-        lf scale = l_sel(good, 1.0f / l_max(weights, L_F(SPARSE_LEAST)), L_F(0));
+        lf scale = l_sel(good, l_div(1.0f, l_max(weights, L_F(SPARSE_LEAST))), L_F(0));
         lv3_store_planes(estimate_normalise(&own, lv3_scale(sum, scale)), indirect, n, first);
         flagged |= l_bits(has & ~good) << at;
     }

@@ -206,7 +206,7 @@ static inline uint bucket_of(float x, float y, float z)
         return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
     float ax = fabs(x), ay = fabs(y), az = fabs(z);
     int on_x = ax >= ay && ax >= az, on_y = !on_x && ay >= az;
-    float major = on_x ? x : on_y ? y : z, u = on_x ? y : x, v = on_x || on_y ? z : y, scale = 1.5f / vit_max(fabs(major), 1e-9f);
+    float major = on_x ? x : on_y ? y : z, u = on_x ? y : x, v = on_x || on_y ? z : y, scale = vit_div(1.5f, vit_max(fabs(major), 1e-9f));
     int iu = min((int)fma(u, scale, 1.5f), 2), iv = min((int)fma(v, scale, 1.5f), 2);
     return (uint)((on_x ? 0 : on_y ? 2 : 4) + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
 }
@@ -238,13 +238,13 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
             lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
             if (VIT_EFFECT_FLATTENED) {
                 float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
-                float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? 1.0f / sqrt(m2) : 0;
+                float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? vit_div(1.0f, vit_sqrt(m2)) : 0;
                 lf off = fma(oz, L_F(mz * unit), fma(oy, L_F(my * unit), ox * (mx * unit)));
                 d2 = fma(off * off, L_F(scene->flatten), d2);
             }
             hits &= l_bits(L_LT(d2, r2));
             float weight[VIT_LANES];
-            L_STORE(1.0f - d2 / r2, weight);
+            L_STORE(1.0f - l_div(d2, r2), weight);
             for (; hits != 0; hits &= hits - 1) {
                 uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
                 global const vit_photon *p = photons + batch.id[k];

@@ -10,7 +10,7 @@
 
 /* What a device is opened with. All but the info lives as long as the device. */
 typedef struct vit_device_setup {
-    const vit_open_info *info; /* device, threads, host_isa, profile, framebuffer */
+    const vit_open_info *info; /* device, threads, host_isa, wide_divide, profile, framebuffer */
     const vit_pack *pack;
     const vit_limits *limits;
     void *state, *memory;      /* in the arena, 64-byte aligned, state zeroed: state_bytes, memory_bytes() */

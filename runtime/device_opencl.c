@@ -106,11 +106,12 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
 }
 
 /* Options of the one program: exactly this effect set, view, format and width. */
-static int build_options(char *text, size_t size, const vit_limits *l) {
+static int build_options(char *text, size_t size, const vit_limits *l, int wide_divide) {
     int n = snprintf(text, size,
-                     "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
+                     "-cl-std=CL1.2 %s -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
                      "-DVIT_EFFECT_DOTS=%d -DVIT_COUNT_WORK=%d",
-                     l->lanes, (int)l->view, (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_WORK) != 0);
+                     wide_divide ? "-DVIT_WIDE_DIVIDE" : "-cl-fp32-correctly-rounded-divide-sqrt", l->lanes, (int)l->view,
+                     (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_WORK) != 0);
 #define X(bit, name, macro, why)                                                                                               \
     n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (l->effects >> bit) & 1);
     VIT_EFFECTS(X)
@@ -121,7 +122,7 @@ static int build_options(char *text, size_t size, const vit_limits *l) {
 static vit_status build(vit_opencl *d, const vit_limits *l, vit_text *why) {
     char options[2048];
     cl_int e;
-    if (!build_options(options, sizeof options, l))
+    if (!build_options(options, sizeof options, l, d->wide_divide))
         return failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);
     d->program = clCreateProgramWithSource(d->context, vit_kernel_source_count, (const char **)(uintptr_t)vit_kernel_sources, NULL, &e);
     if (e != CL_SUCCESS)
@@ -207,13 +208,18 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
 }
 
 /* Same bits need the same rounding: see kernels/strict.clh. */
-static vit_status check_arithmetic(cl_device_id id, vit_text *why) {
-    static const cl_device_fp_config needed = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
-    cl_device_fp_config config = 0;
-    clGetDeviceInfo(id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof config, &config, NULL);
-    if ((config & needed) == needed)
+static vit_status check_arithmetic(vit_opencl *d, int ask_wide, vit_text *why) {
+    static const cl_device_fp_config needed = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST;
+    cl_device_fp_config config = 0, doubles = 0;
+    clGetDeviceInfo(d->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof config, &config, NULL);
+    clGetDeviceInfo(d->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL);
+    d->wide_divide = ask_wide || !(config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT);
+    if ((config & needed) != needed)
+        snprintf(why->text, sizeof why->text, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
+    else if (d->wide_divide && !doubles)
+        snprintf(why->text, sizeof why->text, "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");
+    else
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, division, sqrt)");
     return VIT_FAILED;
 }
 
@@ -223,7 +229,7 @@ static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text
     clGetDeviceInfo(d->id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
     d->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
     d->in_place = d->is_cpu ? setup->info->framebuffer : NULL;
-    if (check_arithmetic(d->id, why) != VIT_OK)
+    if (check_arithmetic(d, setup->info->wide_divide != 0, why) != VIT_OK)
         return VIT_FAILED;
     d->context = clCreateContext(NULL, 1, &d->id, NULL, NULL, &e);
     if (e != CL_SUCCESS)

@@ -15,6 +15,7 @@ typedef struct vit_opencl {
     cl_kernel kernels[VIT_MAX_PASSES];
     cl_mem buffers[B_COUNT];
     int is_cpu, profile;
+    int wide_divide;           /* floats are divided as doubles: VIT_WIDE_DIVIDE in strict.clh */
     void *in_place;            /* the caller's framebuffer if the device renders into it */
     uint32_t enqueued;         /* commands since times() was asked for, with profile */
     uint32_t enqueued_pass[VIT_MAX_ENQUEUES];

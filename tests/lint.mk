@@ -1,5 +1,5 @@
 # clang-tidy (.clang-tidy says which checks and why not others) and cppcheck over our sources; any finding is an error. A file at a time
-# has its stamp in build/lint, so that a second run looks at what has changed. stb is not ours.
+# has its stamp in build/lint, so that a second run looks at what has changed. stb is not ours. The kernels' divisions: tests/float_divisions.sh.
 LINTED := $(filter-out bake/stb_image.c,$(RUNTIME) $(PLAY) $(BAKE) $(COST) $(SCENES))
 LINT_FLAGS := $(filter -D% -I%,$(BASE)) -Ibake -Iruntime -I$(B) -DVIT_EMBREE=$(EMBREE)
 LINT_STAMPS := $(LINTED:%.c=build/lint/%.ok)
@@ -10,13 +10,15 @@ CPPCHECK := --enable=warning,performance,portability --std=c11 --quiet --error-e
             --suppress=ctuuninitvar --suppress=invalidPrintfArgType_sint:runtime/device_opencl.c \
             --suppress=duplicateAssignExpression
 
-.PHONY: lint run-lint run-cppcheck
+.PHONY: lint run-lint run-cppcheck run-float-divisions
 lint: deps lint-deps
 	@$(MAKE) $(SIDE_BY_SIDE) run-lint
-run-lint: run-cppcheck $(LINT_STAMPS)
+run-lint: run-cppcheck run-float-divisions $(LINT_STAMPS)
 	@echo "lint: $(words $(LINTED)) files are clean"
 run-cppcheck:
 	@cppcheck $(CPPCHECK) $(LINT_FLAGS) $(LINTED)
+run-float-divisions:
+	@sh tests/float_divisions.sh $(addprefix kernels/,$(KERNELS))
 build/lint/runtime/host/programs.ok: $(B)/host_programs.h
 build/lint/%.ok: %.c .clang-tidy
 	@mkdir -p $(@D)

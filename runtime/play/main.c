@@ -226,6 +226,7 @@ static vit_status run_pack(player *p, vit_text *why) {
                               .device = device_of(o),
                               .threads = o->threads,
                               .host_isa = o->host_isa,
+                              .wide_divide = o->wide_divide,
                               .lanes = o->lanes,
                               .group = o->group,
                               .format = o->format,

@@ -51,6 +51,7 @@ static const option table[] = {
     WORD("lanes", "N", option_set_lanes, "samples a work-item: 1, 8, 16, or 0 for what suits; changes no bit"),
     WORD("group", "N", option_set_group,
          "work-items a work-group: a power of two up to 256, or 0 for what suits; changes no bit"),
+    FLAG("wide-divide", wide_divide, "OpenCL: divide floats as doubles, as on devices that do not round them rightly by themselves; changes no bit"),
     NUMBER("max-nodes", max_nodes, 1, "replace the pack's bound of hierarchy nodes (tests)"),
     NUMBER("max-list", max_list, 1, "replace the pack's bound of list entries (tests)"),
     WORD("size", "WxH", option_set_size, "always refused: the size is fixed by the pack"),

@@ -26,7 +26,7 @@ typedef struct play_options {
     unsigned percentile;                         /* 50, 95, 99 or 100 (maximum); 0: not given */
     const char *work_budget, *write_work_budget; /* NULL: not asked for */
     bool count_work;
-    bool verify, hash, trace, pace, report, explain, list_devices, quiet, version, help;
+    bool verify, hash, trace, pace, report, explain, list_devices, wide_divide, quiet, version, help;
 } play_options;
 
 /* VIT_USAGE: `why` says which option and what it takes. All that needs no pack is checked here. Keeps pointers into `argv`. */
