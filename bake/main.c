@@ -44,6 +44,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (budget.ms > 0 || budget.work > 0)
         return fit_pack(p, &budget, &b->packed, why);
     const pipeline_choice choice = pipeline_default(p);
+    if (plan_leaves_area_out(&choice.quality))
+        progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     return pipeline_pack(p, &choice, &b->packed, why);
 }
 

@@ -220,7 +220,7 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .scene = &out->plan.scene,
                             .zones = c->quality.zones,
                             .by_light = c->quality.light_zones,
-                            .areas = c->quality.effective_area,
+                            .areas = (out->plan.scene.effects & VIT_EFFECT_BIT_AREA) != 0,
                             .threads = p->threads,
                             .progress = step,
                             .user = p->progress};

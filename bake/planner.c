@@ -6,9 +6,13 @@
 
 #define PACKET 16u
 
-/* Photons that the disc of the radius holds on average if the radius is "auto". With fewer the estimate is mottled, with more it
- * leaks round corners, which dominates from about 1.5 m on in a building the size of Sponza. */
-#define AUTO_PHOTONS 24.0
+/* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost edges
+ * among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc of the radius
+ * is to hold, on average, no fewer photons than make a mottled estimate, and no more than make it smooth: with ever more photons the
+ * radius goes to 0. */
+#define AUTO_OF_WAY 0.2
+#define AUTO_LEAST_PHOTONS 4.0
+#define AUTO_MOST_PHOTONS 150.0
 
 static bool gives_photons(const scene *s, uint32_t light) {
     return s->automatic || s->lights[light].photons;
@@ -108,7 +112,7 @@ static uint32_t effects_of_quality(const scene *s, const plan *p) {
     e |= q->flatten > 0 ? VIT_EFFECT_BIT_FLATTENED : 0;
     e |= q->normal_keys ? VIT_EFFECT_BIT_NORMAL_KEYS : 0;
     e |= q->zones ? VIT_EFFECT_BIT_ZONES : 0;
-    e |= q->effective_area ? VIT_EFFECT_BIT_AREA : 0;
+    e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_EFFECT_BIT_AREA : 0;
     e |= q->bounce_sequence ? VIT_EFFECT_BIT_SEQUENCE : 0;
     e |= q->indirect_samples > 1 ? VIT_EFFECT_BIT_SPARSE : 0;
     e |= q->indirect_samples == 16 ? VIT_EFFECT_BIT_SPARSE_16 : 0;
@@ -184,6 +188,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
     if (c->effects & VIT_EFFECT_BIT_PHOTONS) {
         out->lit_area = lit_area(r);
+        out->free_path = r->free_path;
         double slots = (double)s->quality.photons * (s->quality.bounces - 1);
         c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : plan_radius(out, slots));
         c->flatten = (float)s->quality.flatten;
@@ -192,7 +197,8 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
 }
 
 double plan_radius(const plan *p, double stored) {
-    return sqrt(AUTO_PHOTONS * p->lit_area / (3.14159265358979 * stored));
+    const double of_one = sqrt(p->lit_area / (3.14159265358979 * stored)); /* its disc holds one photon on average */
+    return fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
 }
 
 void plan_set_radius(plan *p, double radius, vit_photon *baked) {
@@ -204,6 +210,10 @@ void plan_set_radius(plan *p, double radius, vit_photon *baked) {
         baked[i].inv_radius2 = inv;
     }
     p->scene.radius = r;
+}
+
+bool plan_leaves_area_out(const scene_quality *q) {
+    return q->effective_area && q->buckets && q->zones;
 }
 
 void plan_free(plan *p) {

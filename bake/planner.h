@@ -12,6 +12,7 @@ typedef struct plan {
     vit_material *materials;   /* model.material_count records */
     uint32_t *baked_paths;     /* a light: paths to bake (still lights), 0 for the others */
     double lit_area;           /* m2 of sides that light can reach */
+    double free_path;          /* reach.free_path, m */
 } plan;
 
 /* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights in proportion to their mean
@@ -24,6 +25,10 @@ void plan_free(plan *p);
 double plan_radius(const plan *p, double stored);
 /* Changes the radius; the baked photons' powers follow. */
 void plan_set_radius(plan *p, double radius, vit_photon *baked);
+
+/* A cluster's buckets hold photons of all zones that any of its samples accepts, a sample's area is that of its own zones: divided by
+ * one another they are no irradiance. So quality.effective_area does nothing with both. */
+bool plan_leaves_area_out(const scene_quality *q);
 
 /* One line an effect: "called for" or not, and why. */
 typedef void plan_line_fn(void *user, const char *line);

@@ -34,6 +34,7 @@ typedef struct search {
     atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of all lights' power */
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
+    float *path;         /* a side: mean length of the rays of step 2 that found something, m */
     float threshold;
     atomic_ullong shot;
 } search;
@@ -66,25 +67,35 @@ static void shoot_from_light(void *user, uint32_t ray) {
         return;
     const vec origin = {l->position[0], l->position[1], l->position[2]};
     const vec direction = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
-    const uint32_t side = ray_scene_cast(&s->rays, origin, direction, INFINITY);
+    float distance = INFINITY;
+    const uint32_t side = ray_scene_cast(&s->rays, origin, direction, &distance);
     const double share = 1.0 / LIGHT_RAYS; /* every light counts alike: a weak one may be all that a room has */
     if (side < s->sides)
         atomic_fetch_add_explicit(s->flux + side, (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
     atomic_fetch_add_explicit(&s->shot, 1, memory_order_relaxed);
 }
 
-/* What ray `i` of a side finds. */
-static uint32_t look(const search *s, uint32_t side, uint32_t i) {
+/* What ray `i` of a side finds, and how far away. */
+static uint32_t look(const search *s, uint32_t side, uint32_t i, float *distance) {
     const vec origin = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
     const vec direction = cosine_direction(side_normal(s->g, side), sequence(side, i, 2), sequence(side, i, 3));
-    return ray_scene_cast(&s->rays, origin, direction, INFINITY);
+    *distance = INFINITY;
+    return ray_scene_cast(&s->rays, origin, direction, distance);
 }
 
 /* Step 2. */
 static void gather(void *user, uint32_t side) {
     search *s = user;
-    for (uint32_t i = 0; i < GATHER_RAYS; i++)
-        s->found[(size_t)side * GATHER_RAYS + i] = look(s, side, i);
+    float sum = 0.0f;
+    uint32_t finds = 0;
+    for (uint32_t i = 0; i < GATHER_RAYS; i++) {
+        float distance;
+        const uint32_t found = look(s, side, i, &distance);
+        s->found[(size_t)side * GATHER_RAYS + i] = found;
+        sum += found != RAY_NOTHING ? distance : 0.0f;
+        finds += found != RAY_NOTHING;
+    }
+    s->path[side] = finds ? sum / (float)finds : 0.0f;
     const double area = triangle_area(s->g->triangles + side / 2);
     s->direct[side] = (float)((double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE / area);
     s->irradiance[side] = s->direct[side];
@@ -126,11 +137,12 @@ static float ask_light(const search *s, uint32_t side, uint32_t i) {
     const vec n = side_normal(s->g, side), o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
     const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};
     const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
+    float within = d;
     const vec unit = {to.x / d, to.y / d, to.z / d};
     const float cosine = unit.x * n.x + unit.y * n.y + unit.z * n.z;
     const float axis = -(unit.x * l->direction[0] + unit.y * l->direction[1] + unit.z * l->direction[2]);
     const bool in_cone = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
-    if (!in_cone || !(cosine > 0.0f) || ray_scene_cast(&s->rays, o, unit, d) != RAY_NOTHING)
+    if (!in_cone || !(cosine > 0.0f) || ray_scene_cast(&s->rays, o, unit, &within) != RAY_NOTHING)
         return 0.0f;
     return mean_intensity(l) > 0.0 ? cosine / (d * d) / (float)solid_angle(l) : 0.0f;
 }
@@ -141,15 +153,29 @@ static void ask_again(void *user, uint32_t side) {
     search *s = user;
     float found = s->irradiance[side], reflected = 0.0f;
     uint32_t rays = 0;
+    float distance;
     if (s->direct[side] > 0.0f)
         found = fmaxf(found, s->threshold);
     for (uint32_t i = 0; i < ASK_LIGHTS && found < s->threshold; i++, rays++)
         if (ask_light(s, side, i) > 0.0f)
             found = s->threshold;
     for (uint32_t i = 0; i < ASK_RAYS && fmaxf(found, reflected) < s->threshold; i++, rays++)
-        reflected += REACH_ALBEDO / (float)ASK_RAYS * irradiance_of(s, look(s, side, GATHER_RAYS + i));
+        reflected += REACH_ALBEDO / (float)ASK_RAYS * irradiance_of(s, look(s, side, GATHER_RAYS + i, &distance));
     s->next_irradiance[side] = fmaxf(found, reflected);
     atomic_fetch_add_explicit(&s->shot, rays, memory_order_relaxed);
+}
+
+/* Mean length of the ways between sides, m, each with the light that goes it; 0: light finds no side. */
+static double mean_free_path(const search *s) {
+    double sum = 0.0, light = 0.0;
+    for (uint32_t side = 0; side < s->sides; side++) {
+        if (!(s->path[side] > 0.0f))
+            continue;
+        const double flux = triangle_area(s->g->triangles + side / 2) * (double)s->irradiance[side];
+        sum += flux * (double)s->path[side];
+        light += flux;
+    }
+    return light > 0.0 ? sum / light : 0.0;
 }
 
 static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, void *user) {
@@ -207,7 +233,8 @@ static bool allocate(search *s) {
     s->direct = malloc(s->sides * sizeof *s->direct);
     s->irradiance = malloc(s->sides * sizeof *s->irradiance);
     s->next_irradiance = malloc(s->sides * sizeof *s->next_irradiance);
-    return s->flux && s->found && s->direct && s->irradiance && s->next_irradiance;
+    s->path = malloc(s->sides * sizeof *s->path);
+    return s->flux && s->found && s->direct && s->irradiance && s->next_irradiance && s->path;
 }
 
 static void release(search *s) {
@@ -217,6 +244,7 @@ static void release(search *s) {
     free(s->direct);
     free(s->irradiance);
     free(s->next_irradiance);
+    free(s->path);
 }
 
 vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, geometry *g, unsigned threads,
@@ -232,6 +260,7 @@ vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, ge
         status = VIT_FAILED;
     } else {
         run_steps(&s, threads, progress, user);
+        out->free_path = mean_free_path(&s);
         flag_dark_sides(&s, out);
     }
     release(&s);

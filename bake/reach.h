@@ -15,6 +15,7 @@
 typedef struct reach {
     double area;                  /* m2, both sides of all triangles */
     double dark_front, dark_back; /* m2 of sides flagged dark */
+    double free_path;             /* metres light goes from side to side, on average; 0: it finds none */
     uint32_t dark_sides;
     uint64_t rays;
     double seconds;

@@ -131,14 +131,14 @@ void ray_scene_close(ray_scene *s) {
     *s = (ray_scene){0};
 }
 
-uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float reach) {
+uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance) {
     struct RTCRayHit r = {.ray = {.org_x = origin.x,
                                   .org_y = origin.y,
                                   .org_z = origin.z,
                                   .dir_x = direction.x,
                                   .dir_y = direction.y,
                                   .dir_z = direction.z,
-                                  .tfar = reach,
+                                  .tfar = *distance,
                                   .mask = ~0u},
                           .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
 #if VIT_EMBREE == 4
@@ -150,6 +150,7 @@ uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float rea
 #endif
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return RAY_NOTHING;
+    *distance = r.ray.tfar;
     const float cosine = dot(triangle_normal(s->g->triangles + r.hit.primID), direction);
     if (fabsf(cosine) < GRAZING || fminf(r.hit.u, fminf(r.hit.v, 1.0f - r.hit.u - r.hit.v)) < EDGE)
         return RAY_UNSURE;

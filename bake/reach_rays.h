@@ -20,9 +20,9 @@ typedef struct ray_scene {
 /* Rays pass cut-out triangles as if they were not there. False: Embree fails; there is nothing to close. */
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out);
 void ray_scene_close(ray_scene *s);
-/* The side that the ray finds within `reach` metres (unit direction): 2 * triangle, + 1 for the back; RAY_NOTHING, RAY_UNSURE.
- */
-uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float reach);
+/* The side that the ray finds within `*distance` metres (unit direction): 2 * triangle, + 1 for the back; RAY_NOTHING, RAY_UNSURE.
+ * *distance becomes how far that is, and stays for RAY_NOTHING. */
+uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance);
 
 /* Dimension d (0..3) of point i of a well spread sequence of its own for each `stream`; 0 <= u < 1. */
 float sequence(uint32_t stream, uint32_t i, uint32_t d);

@@ -222,7 +222,7 @@ static void set_defaults(scene *s) {
     s->quality = (scene_quality){.photons = 17000,
                                  .bounces = 4,
                                  .tile = 32,
-                                 .indirect_samples = 1,
+                                 .indirect_samples = 16,
                                  .texture_filter = FILTER_BILINEAR,
                                  .vertex_bits = 32,
                                  .normal_bits = 16,

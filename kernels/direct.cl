@@ -35,11 +35,12 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         return;
     lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
     lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
+    float least = scene->ray_offset * 0.0625f, least2 = least * least; /* of distances, relative to the scene's size */
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
         lv3 to = lv3_sub(lv3_load(light->position), p);
-        lf d2 = l_max(lv3_dot(to, to), L_F(1e-12f)), d = l_sqrt(d2);
+        lf d2 = l_max(lv3_dot(to, to), L_F(least2)), d = l_sqrt(d2);
         lv3 l = lv3_scale(to, l_div(1.0f, d));
         lf e = l_max(lv3_dot(s, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
         li lit = hit & L_GT(e, L_F(0));

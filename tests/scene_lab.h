@@ -90,15 +90,20 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
     fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
 }
 
-/* Bakes `scene`, a file of the folder or a whole path, with more options, and plays it: `pixels` takes the indirect radiance
- * times exposure of all frames, four floats a pixel. */
-static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
+/* Bakes `scene`, a file of the folder or a whole path, with more options; what the baker says is in out.txt. */
+static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *options) {
     char line[1024];
-    const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
+    const char *pack = scene_lab_path(l, "scene.vit");
     (void)snprintf(line, sizeof line, "%s -o %s --quiet --device host %s",
                    scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
-    (void)snprintf(line, sizeof line, "%s --view indirect --format rgba32f --out raw:%s --quiet --device host", pack, raw);
+}
+
+/* Plays what was baked: `pixels` takes the radiance of `view`, times exposure, of all frames, four floats a pixel. */
+static inline void scene_lab_play(scene_lab *l, const char *view, float *pixels, size_t floats) {
+    char line[1024];
+    const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
+    (void)snprintf(line, sizeof line, "%s --view %s --format rgba32f --out raw:%s --quiet --device host", pack, view, raw);
     scene_lab_run(l, "vitrine-play", line);
     struct stat size;
     assert_int_equal(stat(raw, &size), 0);
@@ -107,6 +112,12 @@ static inline void scene_lab_indirect(scene_lab *l, const char *scene, const cha
     assert_non_null(f);
     assert_int_equal(fread(pixels, sizeof *pixels, floats, f), floats);
     (void)fclose(f);
+}
+
+/* Both, for the indirect light. */
+static inline void scene_lab_indirect(scene_lab *l, const char *scene, const char *options, float *pixels, size_t floats) {
+    scene_lab_bake(l, scene, options);
+    scene_lab_play(l, "indirect", pixels, floats);
 }
 
 #endif

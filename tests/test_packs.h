@@ -91,14 +91,15 @@ static const struct {
     {"sparse-buckets", TEST_PACKS "/room.cfg", PLAIN "--estimate buckets --indirect-samples 4"},
     {"nearest", TEST_PACKS "/room.cfg", PLAIN "--texture-filter nearest"},
     {"trilinear", TEST_PACKS "/room.cfg", PLAIN "--texture-filter trilinear"},
-#define BAKED "--zones 2 --effective-area 1 --bounce-sequence 1 "
+#define BAKED "--zones 2 --effective-area 1 --bounce-sequence 1 --indirect-samples 1 "
     {"zones", TEST_PACKS "/room.cfg", BAKED},
     {"zones-buckets", TEST_PACKS "/room.cfg", BAKED "--estimate buckets --normal-keys 1"},
     {"zones-sparse", TEST_PACKS "/room.cfg", BAKED "--indirect-samples 16"},
     {"zones-sparse-buckets", TEST_PACKS "/room.cfg", BAKED "--indirect-samples 4 --estimate buckets"},
-    {"zones-alone", TEST_PACKS "/room.cfg", "--zones 1 --effective-area 0 --bounce-sequence 0"},
-    {"areas-alone", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0"},
-    {"sequence", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 0 --bounce-sequence 1"},
+    {"zones-alone", TEST_PACKS "/room.cfg", "--zones 1 --effective-area 0 --bounce-sequence 0 --indirect-samples 1"},
+    {"areas-alone", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0 --indirect-samples 1"},
+    {"areas-buckets", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0 --indirect-samples 4 --estimate buckets"},
+    {"sequence", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 0 --bounce-sequence 1 --indirect-samples 1"},
 #undef BAKED
     {"still", TEST_PACKS "/still.cfg", PLAIN},
 #undef PLAIN

@@ -192,6 +192,10 @@ static void zones_and_areas_add_their_cells_and_a_word_a_sample_each(void **stat
     only_adds("zones-alone", "room", " sides cells accept ", " ");
     only_adds("areas-alone", "room", " sides cells inverse_area ", " ");
     only_adds("sequence", "room", " ", " ");
+    /* Buckets have no use for areas within zones: planner.h. */
+    const vit_requirements buckets = requirements("zones-buckets"), open = requirements("areas-buckets");
+    assert_int_equal(bytes_of(&buckets, "inverse_area"), 0);
+    assert_true(bytes_of(&buckets, "accept") > 0 && bytes_of(&open, "inverse_area") > 0);
     assert_int_equal(bytes_of(&all, "accept"), bytes_of(&plain, "keys"));
     assert_int_equal(bytes_of(&all, "inverse_area"), bytes_of(&plain, "keys"));
     assert_int_equal(bytes_of(&all, "sides"), bytes_of(&plain, "triangles") / sizeof(vit_triangle) * 2 * sizeof(vit_u32));

@@ -1,0 +1,153 @@
+/* Scenes of all sizes and at all distances from the origin, against the same scene of 2.6 m at the origin.
+ *
+ * What can go wrong: constants in metres hidden in kernels or baker (a least distance, a near plane, the offset of rays), powers that
+ * overflow or vanish, coordinates that are too far apart as floats. The bounds: nothing in the method knows metres, so a power of two
+ * changes no bit, and any other scale no more than what the roundings of coordinates do; a scene that `translate` puts far away is moved to the origin and
+ * loses nothing; numbers that are large in the mesh file itself have lost their last bits there, before us. Where it stops to hold the
+ * baker warns beforehand: the last point without a warning is held to a bound too. */
+#include "catalogue.h"
+#include "scene_lab.h"
+#include <math.h>
+
+enum { SIDE = 48, FLOATS = 4 * SIDE * SIDE };
+
+typedef struct frame {
+    float pixels[FLOATS];
+    bool warned;
+} frame;
+
+static void write_room(scene_lab *l, double size, double at) {
+    static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}};
+    FILE *f = scene_lab_create(l, "room.obj");
+    for (int i = 0; i < 8; i++)
+        (void)fprintf(f, "v %.17g %.17g %.17g\n", at + (i & 4 ? 1.125 : -1.125) * size, (i & 2 ? 0.875 : -0.875) * size,
+                      at + (i & 1 ? 1.375 : -1.375) * size);
+    for (int i = 0; i < 6; i++)
+        (void)fprintf(f, "f %d %d %d %d\n", side[i][0], side[i][1], side[i][2], side[i][3]);
+    (void)fclose(f);
+}
+
+/* The room `size` times as large, `in_file` away in the mesh's own numbers and, with camera and light, `away` from the origin. Power
+ * goes with the square of the size, so that radiance stays. */
+static void render(scene_lab *l, double size, double in_file, double away, frame *out) {
+    char said[4096];
+    write_room(l, size, in_file);
+    FILE *f = scene_lab_create(l, "scene.cfg");
+    const double x = away + 0.25 * size, y = 0.0, z = away + 0.75 * size, power = 1e-3 * size * size;
+    (void)fprintf(f,
+                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\n"
+                  "meshes = ( { file = \"room.obj\"; translate = [%.17e, 0.0, %.17e]; } );\n"
+                  "camera: { near = %.17e; keys = ( { eye = [%.17e, %.17e, %.17e]; target = [%.17e, %.17e, %.17e]; fov = 70.0; "
+                  "exposure = 1.0; } ); };\n"
+                  "lights = ( { type = \"spot\"; inner = 40.0; outer = 60.0; keys = ( { position = [%.17e, %.17e, %.17e]; target = "
+                  "[%.17e, %.17e, %.17e]; power = [%.17e, %.17e, %.17e]; } ); } );\n"
+                  "quality: { photons = 2000; radius = %.17e; tile = 8; };\n",
+                  SIDE, SIDE, away - in_file, away - in_file, 0.125 * size, x, y, z, away - 0.5 * size, -0.25 * size, away - size, x,
+                  0.5 * size, z, away, -0.875 * size, away, 5 * power, 4 * power, 3 * power, 0.5 * size);
+    (void)fclose(f);
+    scene_lab_bake(l, "scene.cfg", "");
+    f = fopen(scene_lab_path(l, "out.txt"), "r");
+    assert_non_null(f);
+    said[fread(said, 1, sizeof said - 1, f)] = '\0';
+    (void)fclose(f);
+    out->warned = strstr(said, "warning:") != NULL;
+    scene_lab_play(l, "final", out->pixels, FLOATS);
+}
+
+/* Squared error over squared mean, of colour without alpha. */
+static double nmse(const frame *a, const frame *truth) {
+    double error = 0, sum = 0;
+    for (size_t i = 0; i < FLOATS; i++) {
+        if (i % 4 == 3)
+            continue;
+        const double d = (double)a->pixels[i] - (double)truth->pixels[i];
+        error += isnan(d) ? INFINITY : d * d;
+        sum += (double)truth->pixels[i];
+    }
+    return error / (FLOATS / 4 * 3) / pow(sum / (FLOATS / 4 * 3), 2);
+}
+
+static const frame *truth(scene_lab *l) {
+    static frame whole;
+    static bool made;
+    if (!made)
+        render(l, 1.0, 0.0, 0.0, &whole);
+    made = true;
+    assert_false(whole.warned);
+    assert_true(isfinite(nmse(&whole, &whole)));
+    return &whole;
+}
+
+static void a_scale_changes_the_frame_by_roundings_alone(void **state) {
+    static frame f;
+    static catalogue_point points[32];
+    size_t count = 0;
+    double worst = 0.0;
+    for (int exponent = -8; exponent <= 5; exponent += catalogue_whole() ? 1 : 4) {
+        const double size = pow(10.0, exponent);
+        render(*state, size, 0.0, 0.0, &f);
+        const double error = nmse(&f, truth(*state));
+        points[count++] = (catalogue_point){2.75 * size, error};
+        if (!f.warned && !(error <= worst))
+            worst = error;
+    }
+    catalogue_sweep("scale", "size of the scene (m)", "NMSE against the same at 2.75 m", points, count);
+    catalogue_row("scale", "powers of ten from 1e-8 to 1e5; where nothing warns", worst, 3e-13, "NMSE");
+}
+
+static void a_power_of_two_changes_no_bit(void **state) {
+    static frame f;
+    uint64_t wrong = 0, count = 0;
+    for (int exponent = -24; exponent <= 18; exponent += catalogue_whole() ? 2 : 14) {
+        render(*state, exp2(exponent), 0.0, 0.0, &f);
+        if (f.warned)
+            continue;
+        wrong += memcmp(f.pixels, truth(*state)->pixels, sizeof f.pixels) != 0;
+        count++;
+    }
+    catalogue_none("scale", "powers of two that change a bit", wrong, count, "scales");
+}
+
+static void distance_from_the_origin_changes_no_bit(void **state) {
+    static frame f;
+    static catalogue_point moved[32], in_file[32];
+    size_t count = 0;
+    uint64_t wrong = 0;
+    double worst = 0.0;
+    for (int exponent = 2; exponent <= 19; exponent += catalogue_whole() ? 1 : 6) {
+        const double away = exp2(exponent);
+        render(*state, 1.0, 0.0, away, &f);
+        moved[count] = (catalogue_point){away, nmse(&f, truth(*state))};
+        wrong += memcmp(f.pixels, truth(*state)->pixels, sizeof f.pixels) != 0;
+        render(*state, 1.0, away + 0.1, away, &f);
+        in_file[count] = (catalogue_point){away, nmse(&f, truth(*state))};
+        if (!f.warned && !(in_file[count].y <= worst))
+            worst = in_file[count].y;
+        count++;
+    }
+    catalogue_sweep("offset", "distance from the origin by translate (m)", "NMSE against the same at the origin", moved, count);
+    catalogue_sweep("offset_in_file", "distance from 0 of the mesh file's own numbers (m)", "NMSE against the same at the origin", in_file, count);
+    catalogue_none("far away", "distances to 5e5 m by translate that change a bit", wrong, count, "distances");
+    catalogue_row("far away", "the mesh file's own numbers far from 0; where nothing warns", worst, 3e-10, "NMSE");
+}
+
+static int set_up(void **state) {
+    static scene_lab lab;
+    scene_lab_open(&lab);
+    *state = &lab;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    scene_lab_close(*state);
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_scale_changes_the_frame_by_roundings_alone),
+        cmocka_unit_test(a_power_of_two_changes_no_bit),
+        cmocka_unit_test(distance_from_the_origin_changes_no_bit),
+    };
+    return cmocka_run_group_tests_name("scenes of all sizes, at all distances", tests, set_up, tear_down);
+}
