@@ -22,6 +22,9 @@ OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=
 else
 $(error config must be release, debug, sanitize or fuzz, got '$(config)')
 endif
+MACHINE := $(shell $(CC) -dumpmachine)
+# There GCC, asked for C11, makes doubles of floats, because the C library's float_t is one; asked for speed, it does not.
+BASE += $(if $(filter s390x-%,$(MACHINE)),-fexcess-precision=fast)
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
@@ -50,7 +53,7 @@ LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
 # The device `host`: runtime/host/kernels.c once for each instruction set, best first, and each number of lanes.
 HOST_LANES := 1 8 16
-HOST_ISAS := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine)),avx512 avx2) baseline
+HOST_ISAS := $(if $(filter x86_64-%,$(MACHINE)),avx512 avx2) baseline
 HOST_FLAGS_avx2 := -mavx2 -mfma
 HOST_FLAGS_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mprefer-vector-width=512
 ifneq ($(filter sanitize fuzz,$(config)),)

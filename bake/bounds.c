@@ -149,7 +149,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         *nodes = t.nodes > *nodes ? t.nodes : *nodes;
         *list = t.list > *list ? t.list : *list;
         vit_gold *g = &in->gold[*next];
-        split(g->xrgb8888, vit_hash(r.frame, r.stride * s->height));
+        split(g->xrgb8888, vit_hash_frame(r.frame, VIT_FORMAT_XRGB8888, r.stride * s->height));
         g->nodes = t.nodes;
         g->clusters = t.clusters;
         g->photons = t.photons;
@@ -167,7 +167,7 @@ static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why
     vit_status status = run_begin(&r, in, in->sections, format, why);
     for (uint32_t i = 0; i < in->scene->frames && status == VIT_OK; i++) {
         status = frame(in, &r, i, format == VIT_FORMAT_RGB565 ? "RGB565 hashes" : "RGBA32F hashes", why);
-        split(format == VIT_FORMAT_RGB565 ? in->gold[i].rgb565 : in->gold[i].rgba32f, vit_hash(r.frame, r.stride * in->scene->height));
+        split(format == VIT_FORMAT_RGB565 ? in->gold[i].rgb565 : in->gold[i].rgba32f, vit_hash_frame(r.frame, format, r.stride * in->scene->height));
     }
     run_end(&r);
     return status;

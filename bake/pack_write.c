@@ -14,6 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+_Static_assert(!VIT_BIG_ENDIAN, "records are written as memory has them: bake on a little-endian machine");
+
 static vit_status fail(vit_status status, vit_text *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
 static vit_status fail(vit_status status, vit_text *why, const char *format, ...) {
     if (why) {

@@ -45,7 +45,7 @@ typedef struct vit_text {
     char text[512];
 } vit_text;
 
-/* Framebuffer formats: X(name, bytes a pixel, meaning). */
+/* Framebuffer formats: X(name, bytes a pixel, meaning). Words, half words and floats are in the machine's byte order. */
 #define VIT_FORMATS(X)                                                                                                           \
     X(XRGB8888, 4, "0x00RRGGBB words, sRGB curve")                                                                               \
     X(RGB565, 2, "rrrrrggggggbbbbb half words, sRGB curve")                                                                      \
@@ -114,7 +114,7 @@ typedef struct vit_requirements {
     float fps;
     uint32_t effects;          /* VIT_EFFECT_BIT_* of the pack */
     size_t host_bytes;         /* arena; with VIT_DEVICE_HOST buffers too, but not what is used in place: the pack's sections and, if
-                                * it was given, vit_open_info.framebuffer */
+                                * it was given, vit_open_info.framebuffer. Big-endian machines: also a copy of the sections */
     uint64_t device_bytes;     /* sum of buffers[].bytes */
     uint32_t buffer_count;
     vit_buffer_info buffers[VIT_MAX_BUFFERS];
@@ -162,10 +162,13 @@ vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why);
  * vit_open_info.framebuffer, tightly packed. A NULL framebuffer renders without the transfer. */
 vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why);
 
-/* Golden XXH3-64 hash of frame `index` in the format that `v` was opened with; 0 if the pack holds none. */
+/* Golden hash of frame `index` in the format that `v` was opened with, to compare with vit_hash_frame(); 0 if the pack holds none. */
 uint64_t vit_golden(const vit *v, uint32_t index);
 
-/* XXH3-64 of `bytes` bytes: how frames are hashed (tightly packed rows). */
+/* XXH3-64 of tightly packed rows, `bytes` bytes in all, as little-endian machines have them: equal on every machine. */
+uint64_t vit_hash_frame(const void *pixels, vit_format format, size_t bytes);
+
+/* XXH3-64 of `bytes` bytes as they are. On little-endian machines vit_hash_frame() is this. */
 uint64_t vit_hash(const void *data, size_t bytes);
 
 /* Reads the counters back: not for the frame loop. */
@@ -187,8 +190,8 @@ typedef struct vit_fault {
  * ones were forgotten. VIT_FAILED: the device cannot be asked any more; `out` then holds what the host knows. */
 vit_status vit_faults(vit *v, vit_fault out[VIT_MAX_FAULTS], uint32_t *count, int *lost, vit_text *why);
 
-/* Renders frame `index` and calls `pass` after each pass with a hash of what the pass wrote. For finding the pass in which
- * two devices part; slow. `scratch` holds the largest buffer (vit_requirements.buffers). */
+/* Renders frame `index` and calls `pass` after each pass with a hash of what the pass wrote, equal on machines of either byte order. For
+ * finding the pass in which two devices part; slow. `scratch` holds the largest buffer (vit_requirements.buffers). */
 typedef void vit_trace_fn(void *user, const char *pass, uint64_t hash);
 vit_status vit_trace(vit *v, uint32_t index, void *scratch, size_t scratch_size, vit_trace_fn *pass, void *user, vit_text *why);
 

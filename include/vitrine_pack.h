@@ -20,6 +20,10 @@
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
 #define VIT_PACK_VERSION 3u
 #define VIT_PACK_ALIGN 4096u
+#define VIT_WORD 4u /* bytes of every field of every record, and so what a machine of the other byte order swaps by */
+
+/* Does this machine have numbers in another order than the file? */
+#define VIT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how much of

@@ -11,7 +11,7 @@
 /* What a device is opened with. All but the info lives as long as the device. */
 typedef struct vit_device_setup {
     const vit_open_info *info; /* device, threads, host_isa, wide_divide, profile, framebuffer */
-    const vit_pack *pack;
+    const vit_pack *pack;      /* in the machine's byte order */
     const vit_limits *limits;
     void *state, *memory;      /* in the arena, 64-byte aligned, state zeroed: state_bytes, memory_bytes() */
 } vit_device_setup;

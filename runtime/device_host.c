@@ -1,5 +1,5 @@
 /* The device `host`: the kernels compiled as C (host/kernels.c), run by threads. Buffers lie in the caller's arena, the pack's
- * sections are used where they are. Work-groups are single work-items, so nothing waits within a pass. */
+ * sections are used where vit_pack has them. Work-groups are single work-items, so nothing waits within a pass. */
 #include "device.h"
 #include "host/host.h"
 #include "host/pool.h"

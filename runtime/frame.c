@@ -1,4 +1,5 @@
 /* vit_frame, vit_trace: walks the table, in order, and waits once a frame. */
+#include "byte_order.h"
 #include "vit.h"
 #include <stdio.h>
 
@@ -82,7 +83,7 @@ static vit_status trace_pass(vit *v, uint32_t pass, uint32_t level, void *user, 
             snprintf(name, sizeof name, "%s.%s", vit_passes[pass].name, vit_buffer_names[b]);
         else
             snprintf(name, sizeof name, "%s[%u].%s", vit_passes[pass].name, level, vit_buffer_names[b]);
-        t->pass(t->user, name, vit_hash(t->scratch, (size_t)bytes));
+        t->pass(t->user, name, vit_hash_words(t->scratch, (size_t)bytes, vit_buffer_word(b, &v->limits)));
     }
     return VIT_OK;
 }

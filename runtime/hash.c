@@ -1,23 +1,14 @@
 /* hash.c: the one hash of the product, XXH3-64 with seed 0. Sections of a pack, frames and traced buffers all use it.
- * XXH3 gives the same 64-bit number on little- and big-endian hosts; no secret, no seed, so the number is comparable anywhere.
+ * XXH3 gives the same 64-bit number of the same bytes on little- and big-endian hosts; no secret, no seed, so the number is
+ * comparable anywhere. Numbers wider than a byte are hashed as little-endian machines have them.
  */
-#include "vitrine.h"
-
-/* The library is inlined here and nowhere else: no run-time dependency, and its warnings stay out of our own code. */
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wsign-conversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wpedantic"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#endif
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
+#include "byte_order.h"
+#include "xxh3.h"
 
 uint64_t vit_hash(const void *data, size_t bytes) {
     return XXH3_64bits(data, bytes);
+}
+
+uint64_t vit_hash_frame(const void *pixels, vit_format format, size_t bytes) {
+    return vit_hash_words(pixels, bytes, format == VIT_FORMAT_RGB565 ? 2 : 4);
 }

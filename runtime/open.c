@@ -1,4 +1,5 @@
 /* vit_require, vit_open, vit_close: from a pack to everything that its frames need. */
+#include "byte_order.h"
 #include "vit.h"
 #include <stdio.h>
 #include <string.h>
@@ -44,20 +45,41 @@ static size_t round_up(size_t bytes) {
     return (bytes + 63) / 64 * 64;
 }
 
-/* The arena: vit, the device's state, its memory. SIZE_MAX: more than there can be. */
-static size_t host_bytes(const vit_device *d, const vit_scene *s, const vit_limits *l, int in_place) {
-    size_t own = round_up(sizeof(vit)) + round_up(d->state_bytes), memory = d->memory_bytes(s, l, in_place);
+/* What the pack's sections take in the arena where they cannot be used as the file has them. Less than the pack's size and a cache line
+ * each. */
+static size_t swapped_bytes(const vit_pack *pack) {
+    size_t sum = 0;
+    for (int i = 0; VIT_BIG_ENDIAN && i < VIT_SECTION_COUNT; i++)
+        sum += round_up(pack->bytes[i]);
+    return sum;
+}
+
+/* Puts the sections, in the machine's byte order, at `to`. */
+static void swap_sections(vit_pack *pack, char *to) {
+    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+        if (pack->bytes[i] > 0)
+            pack->section[i] = vit_swap_words(to, pack->section[i], pack->bytes[i], VIT_WORD);
+        to += round_up(pack->bytes[i]);
+    }
+    pack->scene = pack->section[VIT_SECTION_META];
+}
+
+/* The arena: vit, the device's state, swapped sections, the device's memory. SIZE_MAX: more than there can be. */
+static size_t host_bytes(const vit_device *d, const vit_pack *pack, const vit_limits *l, int in_place) {
+    size_t own = round_up(sizeof(vit)) + round_up(d->state_bytes) + swapped_bytes(pack);
+    size_t memory = d->memory_bytes(pack->scene, l, in_place);
     return memory <= SIZE_MAX - own ? own + memory : SIZE_MAX;
 }
 
-static void describe(const vit_device *d, const vit_scene *s, const vit_limits *l, int in_place, vit_requirements *need) {
+static void describe(const vit_device *d, const vit_pack *pack, const vit_limits *l, int in_place, vit_requirements *need) {
+    const vit_scene *s = pack->scene;
     memset(need, 0, sizeof *need);
     need->width = s->width;
     need->height = s->height;
     need->frames = s->frames;
     need->fps = s->fps;
     need->effects = s->effects;
-    need->host_bytes = host_bytes(d, s, l, in_place);
+    need->host_bytes = host_bytes(d, pack, l, in_place);
     need->frame_bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, l);
     for (uint32_t b = 0; b < B_COUNT; b++) {
         uint64_t bytes = vit_buffer_bytes(b, s, l);
@@ -89,14 +111,14 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
     const vit_device *device;
     vit_status status = look_at(info, &pack, &l, &device, why);
     if (status == VIT_OK)
-        describe(device, pack.scene, &l, info->framebuffer != NULL, need);
+        describe(device, &pack, &l, info->framebuffer != NULL, need);
     return status;
 }
 
-/* Lays vit and the device's state out in the arena. */
+/* Lays vit, the device's state and what was swapped out in the arena. */
 static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device, vit **out,
                              vit_device_setup *setup, vit_text *why) {
-    size_t need = host_bytes(device, pack->scene, l, info->framebuffer != NULL);
+    size_t need = host_bytes(device, pack, l, info->framebuffer != NULL);
     if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need) {
         snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", need);
         return VIT_USAGE;
@@ -104,11 +126,14 @@ static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, co
     vit *v = info->arena;
     memset(v, 0, round_up(sizeof *v) + round_up(device->state_bytes));
     v->pack = *pack;
+    char *swapped = (char *)info->arena + round_up(sizeof *v) + round_up(device->state_bytes);
+    if (VIT_BIG_ENDIAN)
+        swap_sections(&v->pack, swapped);
     v->limits = *l;
     v->device = device;
     v->state = (char *)info->arena + round_up(sizeof *v);
     v->profile = info->profile != 0;
-    *setup = (vit_device_setup){info, &v->pack, &v->limits, v->state, (char *)v->state + round_up(device->state_bytes)};
+    *setup = (vit_device_setup){info, &v->pack, &v->limits, v->state, swapped + swapped_bytes(pack)};
     *out = v;
     return VIT_OK;
 }

@@ -3,7 +3,7 @@
 
 vit_status pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why) {
     for (vit_u32 i = 0; i < s->frames; i++) {
-        const vit_camera *c = &cameras[i];
+        const vit_camera *c = VIT_RECORD(vit_camera, cameras, i);
         if (!all_finite(c->eye, 3) || !all_finite(c->corner, 3) || !all_finite(c->right, 3) || !all_finite(c->down, 3))
             return pack_refuse(why, "section CAMS: camera %u: a vector is not finite", i);
         if (!is_unit(c->forward))
@@ -65,10 +65,10 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
 static vit_status check_path_ranges(const vit_scene *s, const vit_light *lights, vit_text *why) {
     uint64_t sum = 0;
     for (vit_u32 i = 0; i < s->lights; i++) {
-        const vit_light *a = &lights[i];
+        const vit_light *a = VIT_RECORD(vit_light, lights, i);
         sum += a->path_count;
         for (vit_u32 j = 0; j < i; j++) {
-            const vit_light *b = &lights[j];
+            const vit_light *b = VIT_RECORD(vit_light, lights, j);
             if (a->path_first < b->path_first + b->path_count && b->path_first < a->path_first + a->path_count &&
                 a->path_count != 0 && b->path_count != 0)
                 return pack_refuse(why, "section LITE: lights %u and %u share photon paths", j, i);
@@ -83,11 +83,12 @@ static vit_status check_path_ranges(const vit_scene *s, const vit_light *lights,
 vit_status pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why) {
     for (vit_u32 frame = 0; frame < s->frames; frame++)
         for (vit_u32 i = 0; i < s->lights; i++) {
-            const vit_light *l = &lights[(size_t)frame * s->lights + i];
+            const vit_light *first = VIT_RECORD(vit_light, lights, i);
+            const vit_light *l = VIT_RECORD(vit_light, lights, (size_t)frame * s->lights + i);
             const char *fault = light_fault(s, l);
             if (fault)
                 return pack_refuse(why, "section LITE: frame %u, light %u: %s", frame, i, fault);
-            if (l->path_first != lights[i].path_first || l->path_count != lights[i].path_count)
+            if (l->path_first != first->path_first || l->path_count != first->path_count)
                 return pack_refuse(why, "section LITE: frame %u, light %u: paths differ from frame 0", frame, i);
         }
     return check_path_ranges(s, lights, why);
@@ -95,7 +96,7 @@ vit_status pack_check_lights(const vit_scene *s, const vit_light *lights, vit_te
 
 vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why) {
     for (vit_u32 i = 0; i < s->triangles; i++) {
-        const vit_attributes *a = &attributes[i];
+        const vit_attributes *a = VIT_RECORD(vit_attributes, attributes, i);
         const vit_u32 material = a->material & VIT_MATERIAL_INDEX;
         if (material >= s->materials)
             return pack_refuse(why, "section ATTR: triangle %u: material %u of %u", i, material, s->materials);
@@ -111,7 +112,7 @@ vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attri
 
 vit_status pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
     for (vit_u32 i = 0; i < s->materials; i++) {
-        const vit_material *m = &materials[i];
+        const vit_material *m = VIT_RECORD(vit_material, materials, i);
         if (!all_in_range(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO))
             return pack_refuse(why, "section MATL: material %u: albedo must be in 0..%g", i, (double)VIT_MAX_ALBEDO);
         if (!all_in_range(m->emission, 3, 0.0f, VIT_MAX_RADIANCE))
@@ -128,7 +129,7 @@ vit_status pack_check_materials(const vit_scene *s, const vit_material *material
 
 vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why) {
     for (vit_u32 i = 0; i < s->textures; i++) {
-        const vit_texture *t = &textures[i];
+        const vit_texture *t = VIT_RECORD(vit_texture, textures, i);
         if (t->mip_count == 0)
             return pack_refuse(why, "section TEXR: texture %u: no mip level", i);
         if ((uint64_t)t->first_mip + t->mip_count > s->mips)
@@ -141,7 +142,7 @@ vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, 
 
 vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why) {
     for (vit_u32 i = 0; i < s->mips; i++) {
-        const vit_mip *m = &mips[i];
+        const vit_mip *m = VIT_RECORD(vit_mip, mips, i);
         if (m->width < 1 || m->width > 16384 || m->height < 1 || m->height > 16384)
             return pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width, m->height);
         if (m->pitch < m->width + 2)
@@ -156,15 +157,18 @@ vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *wh
 
 vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why) {
     for (uint64_t i = 0; s->cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
-        const uint64_t parts = sides[i] >> VIT_SIDE_PARTS_SHIFT, first = sides[i] & VIT_SIDE_CELL;
+        const vit_u32 side = *VIT_RECORD(vit_u32, sides, i);
+        const uint64_t parts = side >> VIT_SIDE_PARTS_SHIFT, first = side & VIT_SIDE_CELL;
         if (parts < 1 || first + parts * parts > s->cells)
             return pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells", (unsigned long long)i,
                                (unsigned long long)parts, (unsigned long long)first, s->cells);
     }
-    for (vit_u32 i = 0; i < s->cells; i++)
+    for (vit_u32 i = 0; i < s->cells; i++) {
+        const vit_cell *c = VIT_RECORD(vit_cell, cells, i);
         for (int k = 0; k < 3; k++)
-            if ((cells[i].word >> 9 * k & 511u) < VIT_CELL_AREA_LEAST)
+            if ((c->word >> 9 * k & 511u) < VIT_CELL_AREA_LEAST)
                 return pack_refuse(why, "section CELL: cell %u: an area is too small", i);
+    }
     return VIT_OK;
 }
 
@@ -187,7 +191,7 @@ static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
 
 vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
     for (vit_u32 i = 0; i < s->baked; i++) {
-        const char *fault = photon_fault(s, &photons[i]);
+        const char *fault = photon_fault(s, VIT_RECORD(vit_photon, photons, i));
         if (fault)
             return pack_refuse(why, "section PHOT: photon %u: %s", i, fault);
     }
@@ -196,7 +200,7 @@ vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit
 
 vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why) {
     for (vit_u32 i = 0; i < s->frames; i++)
-        if (!all_zero(golds[i].pad, 4))
+        if (!all_zero(VIT_RECORD(vit_gold, golds, i)->pad, 4))
             return pack_refuse(why, "section GOLD: frame %u: padding is not 0", i);
     return VIT_OK;
 }

@@ -1,9 +1,10 @@
 /* The loader's checks of what a pack says, one section a function. pack_read.c has checked the container before: every section
- * has its hash and exactly the size that META counts. Each refuses with VIT_BAD_INPUT and one line. */
+ * has its hash and exactly the size that META counts. Each refuses with VIT_BAD_INPUT and one line. Records are as the file has them and
+ * are looked at by VIT_RECORD alone; the scene is in the machine's byte order. */
 #ifndef VIT_PACK_CHECK_H
 #define VIT_PACK_CHECK_H
 
-#include "vitrine_pack.h"
+#include "byte_order.h"
 
 #include <float.h>
 #include <stdbool.h>

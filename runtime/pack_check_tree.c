@@ -6,9 +6,11 @@
  * (only the second child may be missing): a node met twice would bring its triangles a second time and be refused. */
 #include "pack_check.h"
 
+#include <string.h>
+
 vit_status pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why) {
     for (vit_u32 i = 0; i < s->triangles; i++) {
-        const vit_triangle *t = &triangles[i];
+        const vit_triangle *t = VIT_RECORD(vit_triangle, triangles, i);
         const float n[3] = {t->nx, t->ny, t->nz};
         if (!all_finite(t->v0, 3) || !all_finite(t->v1, 3) || !all_finite(t->v2, 3))
             return pack_refuse(why, "section GEOM: triangle %u: vertex is not finite", i);
@@ -24,10 +26,10 @@ vit_status pack_check_triangles(const vit_scene *s, const vit_triangle *triangle
 
 /* A child that the walk has yet to enter. */
 typedef struct visit {
-    vit_u32 child;        /* as in vit_bvh_node */
-    vit_u32 depth;        /* inner nodes above it */
-    vit_u32 parent;       /* for the error line */
-    const float *lo, *hi; /* its box; NULL for the root, whose box nothing states */
+    vit_u32 child;      /* as in vit_bvh_node */
+    vit_u32 depth;      /* inner nodes above it */
+    vit_u32 parent;     /* for the error line */
+    float lo[3], hi[3]; /* its box; the root's, which nothing states, holds all */
 } visit;
 
 typedef struct walk {
@@ -80,26 +82,23 @@ static vit_status enter_leaf(walk *w, const visit *v) {
         return pack_refuse(w->why, "section BVHN: node %u: leaf begins at triangle %u, expected %u", v->parent, first,
                            w->found);
     for (vit_u32 i = first; i < first + count; i++)
-        if (!box_holds_triangle(v, &w->triangles[i], w->s->box_pad))
+        if (!box_holds_triangle(v, VIT_RECORD(vit_triangle, w->triangles, i), w->s->box_pad))
             return pack_refuse(w->why, "section BVHN: node %u: box does not hold triangle %u", v->parent, i);
     w->found += count;
     return VIT_OK;
 }
 
-/* Child `which` (0 or 1) of the node that `v` leads to. */
-static vit_status queue_child(walk *w, const visit *v, int which) {
+/* Child `which` (0 or 1) of the node `n` that `v` leads to. */
+static vit_status queue_child(walk *w, const visit *v, const vit_bvh_node *n, int which) {
     const vit_u32 index = v->child;
-    const vit_bvh_node *n = &w->nodes[index];
-    const visit c = {.child = which ? n->child1 : n->child0,
-                     .depth = v->depth + 1,
-                     .parent = index,
-                     .lo = which ? n->lo1 : n->lo0,
-                     .hi = which ? n->hi1 : n->hi0};
+    visit c = {.child = which ? n->child1 : n->child0, .depth = v->depth + 1, .parent = index};
+    memcpy(c.lo, which ? n->lo1 : n->lo0, sizeof c.lo);
+    memcpy(c.hi, which ? n->hi1 : n->hi0, sizeof c.hi);
     const bool leaf = c.child & VIT_LEAF_BIT;
     if (!(which == 1 && leaf && box_is_empty(c.lo, c.hi))) {
         if (!all_finite(c.lo, 3) || !all_finite(c.hi, 3) || !box_is_inside(c.lo, c.lo, c.lo, c.hi))
             return pack_refuse(w->why, "section BVHN: node %u: box of child %d is not finite or inside out", index, which);
-        if (v->lo && !box_is_inside(c.lo, c.hi, v->lo, v->hi))
+        if (!box_is_inside(c.lo, c.hi, v->lo, v->hi))
             return pack_refuse(w->why, "section BVHN: node %u: box of child %d leaves its parent's", index, which);
     }
     if (!leaf && (c.child <= index || c.child >= w->s->nodes))
@@ -109,18 +108,19 @@ static vit_status queue_child(walk *w, const visit *v, int which) {
 }
 
 static vit_status enter_node(walk *w, const visit *v) {
+    const vit_bvh_node *n = VIT_RECORD(vit_bvh_node, w->nodes, v->child);
     if (v->depth + 1 >= VIT_BVH_STACK)
         return pack_refuse(w->why, "section BVHN: node %u: deeper than %d", v->child, VIT_BVH_STACK - 1);
-    if (!all_zero(w->nodes[v->child].pad, 2))
+    if (!all_zero(n->pad, 2))
         return pack_refuse(w->why, "section BVHN: node %u: padding is not 0", v->child);
     w->visited++;
-    vit_status status = queue_child(w, v, 1); /* last in, first out: child 0 is entered first */
-    return status == VIT_OK ? queue_child(w, v, 0) : status;
+    vit_status status = queue_child(w, v, n, 1); /* last in, first out: child 0 is entered first */
+    return status == VIT_OK ? queue_child(w, v, n, 0) : status;
 }
 
 vit_status pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why) {
     walk w = {.s = s, .nodes = nodes, .triangles = triangles, .why = why};
-    w.stack[w.waiting++] = (visit){.child = 0};
+    w.stack[w.waiting++] = (visit){.child = 0, .lo = {-FLT_MAX, -FLT_MAX, -FLT_MAX}, .hi = {FLT_MAX, FLT_MAX, FLT_MAX}};
     while (w.waiting > 0) {
         const visit v = w.stack[--w.waiting];
         vit_status status = v.child & VIT_LEAF_BIT ? enter_leaf(&w, &v) : enter_node(&w, &v);

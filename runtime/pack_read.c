@@ -1,6 +1,7 @@
 /* pack_read.c: checks the container of a pack (header, table, places, hashes), then has each section's contents checked.
  * Nothing is used before it is checked; no arithmetic on numbers of the file can wrap. */
 #include "pack_read.h"
+#include "byte_order.h"
 #include "pack_check.h"
 
 #include <stdarg.h>
@@ -39,14 +40,6 @@ vit_status pack_refuse(vit_text *why, const char *format, ...) {
     return VIT_BAD_INPUT;
 }
 
-/* Sections are used in place, so the host must read numbers as the file has them. */
-static bool host_is_little_endian(void) {
-    const uint32_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 1;
-}
-
 /* Whole words by memcmp against a block of zeros: gaps may be large. */
 static bool bytes_are_zero(const unsigned char *bytes, size_t size) {
     static const unsigned char zeros[256];
@@ -59,13 +52,12 @@ static bool bytes_are_zero(const unsigned char *bytes, size_t size) {
     return true;
 }
 
-static vit_status check_header(const vit_pack_header *h, size_t size, vit_text *why) {
-    if (size < sizeof *h)
-        return pack_refuse(why, "header: the file has %zu bytes, a header has %zu", size, sizeof *h);
+static vit_status check_header(const vit_pack_header *file, size_t size, vit_text *why) {
+    if (size < sizeof *file)
+        return pack_refuse(why, "header: the file has %zu bytes, a header has %zu", size, sizeof *file);
+    const vit_pack_header *h = VIT_BIG_ENDIAN ? vit_swap_header(&(vit_pack_header){0}, file) : file;
     if (memcmp(h->magic, VIT_PACK_MAGIC, sizeof h->magic) != 0)
         return pack_refuse(why, "header: not a Vitrine pack");
-    if (!host_is_little_endian())
-        return pack_refuse(why, "header: packs are little-endian, this machine is big-endian");
     if (h->version != VIT_PACK_VERSION)
         return pack_refuse(why, "header: version %u, this program reads version %u", h->version, VIT_PACK_VERSION);
     if (h->sections != VIT_SECTION_COUNT)
@@ -76,7 +68,7 @@ static vit_status check_header(const vit_pack_header *h, size_t size, vit_text *
         return pack_refuse(why, "header: reserved bytes are not 0");
     if (size < TABLE_END)
         return pack_refuse(why, "header: the file ends inside the section table");
-    if (vit_hash(h + 1, TABLE_END - sizeof *h) != h->table_hash)
+    if (vit_hash(file + 1, TABLE_END - sizeof *file) != h->table_hash)
         return pack_refuse(why, "header: the hash of the section table does not match");
     return VIT_OK;
 }
@@ -106,12 +98,13 @@ static vit_status check_places(const unsigned char *bytes, size_t size, vit_pack
     const vit_pack_entry *table = (const vit_pack_entry *)(const void *)(bytes + sizeof(vit_pack_header));
     uint64_t end = TABLE_END;
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
-        vit_status status = check_place(bytes, size, &table[i], i, end, why);
+        const vit_pack_entry *e = VIT_BIG_ENDIAN ? vit_swap_entry(&(vit_pack_entry){0}, &table[i]) : &table[i];
+        vit_status status = check_place(bytes, size, e, i, end, why);
         if (status != VIT_OK)
             return status;
-        end = table[i].offset + table[i].size;
-        out->bytes[i] = (size_t)table[i].size;
-        out->section[i] = table[i].size > 0 ? bytes + table[i].offset : 0;
+        end = e->offset + e->size;
+        out->bytes[i] = (size_t)e->size;
+        out->section[i] = e->size > 0 ? bytes + e->offset : 0;
     }
     if (end != size)
         return pack_refuse(why, "header: %llu bytes follow the last section", (unsigned long long)(size - end));
@@ -158,6 +151,15 @@ static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text
     return status; /* every word of ATLS is a texel */
 }
 
+/* The scene lives as long as the pack in memory, or as `out`. */
+static void keep_scene(vit_pack *out, const vit_scene *s) {
+#if VIT_BIG_ENDIAN
+    out->swapped = *s;
+    s = &out->swapped;
+#endif
+    out->scene = s;
+}
+
 vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text *why) {
     *out = (vit_pack){0};
     if (!bytes || (uintptr_t)bytes % 8 != 0)
@@ -170,13 +172,15 @@ vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text
         return status;
     if (found.bytes[VIT_SECTION_META] != sizeof(vit_scene))
         return pack_refuse(why, "section META: %zu bytes, expected %zu", found.bytes[VIT_SECTION_META], sizeof(vit_scene));
-    found.scene = found.section[VIT_SECTION_META];
-    status = pack_check_meta(found.scene, why);
+    const vit_scene *s = VIT_RECORD(vit_scene, (const vit_scene *)found.section[VIT_SECTION_META], 0);
+    status = pack_check_meta(s, why);
     if (status == VIT_OK)
-        status = check_sizes(found.scene, &found, why);
+        status = check_sizes(s, &found, why);
     if (status == VIT_OK)
-        status = check_contents(found.scene, &found, why);
+        status = check_contents(s, &found, why);
     if (status == VIT_OK)
         *out = found;
+    if (status == VIT_OK)
+        keep_scene(out, s);
     return status;
 }

@@ -53,6 +53,11 @@ uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits 
     }
 }
 
+uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l) {
+    const int halves = (buffer == B_position && (l->effects & ON(SMALL_SAMPLES))) || (buffer == B_framebuffer && l->format == VIT_FORMAT_RGB565);
+    return halves ? 2 : 4;
+}
+
 const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
     uint32_t by = buffer_when[buffer] & l->effects;
     if (buffer_when[buffer] == ALWAYS)

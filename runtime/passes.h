@@ -141,6 +141,8 @@ extern const vit_section vit_buffer_sections[B_COUNT];
 int vit_pass_called(uint32_t pass, const vit_limits *l);
 int vit_buffer_called(uint32_t buffer, const vit_limits *l);
 uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits *l);
+/* Bytes of the words that the buffer is made of: 4, or 2 where it holds half words. */
+uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l);
 /* Name of an effect that calls for the buffer: "always", or of the first. */
 const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l);
 uint32_t vit_format_bytes(vit_format format);

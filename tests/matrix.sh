@@ -71,7 +71,7 @@ else
     absent "Oclgrind"
 fi
 
-for machine in aarch64 riscv64; do
+for machine in aarch64 riscv64 s390x; do
     cc=$machine-linux-gnu-gcc qemu=qemu-$machine-static build=build/$machine
     if command -v $cc >/dev/null && command -v $qemu >/dev/null; then
         make --no-print-directory -s OPENCL=0 B="$build" CC=$cc "$build/libvitrine.a" >"$out/$machine.log" 2>&1 &&

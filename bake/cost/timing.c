@@ -48,7 +48,7 @@ static vit_status open_entry(const timing_input *in, timing_entry *e, opened *o,
     vit_status status = opened_begin(&info, o, why);
     for (uint32_t f = 0; status == VIT_OK && f < o->need.frames; f++) {
         status = opened_frame(o, f, why);
-        if (status == VIT_OK && vit_hash(o->frame, o->need.frame_bytes) != vit_golden(o->v, f)) {
+        if (status == VIT_OK && vit_hash_frame(o->frame, info.format, o->need.frame_bytes) != vit_golden(o->v, f)) {
             snprintf(why->text, sizeof why->text, "setting '%s': frame %u of its pack has another hash than its golden one",
                      e->name, f);
             status = VIT_MISMATCH;

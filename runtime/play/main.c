@@ -119,7 +119,7 @@ static vit_status open_all(player *p, vit_text *why) {
         p->info.framebuffer = p->pixels;
         status = vit_open(&p->info, &p->v, why);
     }
-    p->verdict = (verdict){.compare = o->verify, .print = o->hash};
+    p->verdict = (verdict){.compare = o->verify, .print = o->hash, .format = o->format};
     if (status == VIT_OK)
         status = verdict_begin(&p->verdict, p->v, p->first, p->end, why);
     if (status == VIT_OK)

@@ -17,7 +17,7 @@ vit_status verdict_begin(const verdict *d, const vit *v, uint32_t first, uint32_
 vit_status verdict_frame(verdict *d, const vit *v, uint32_t index, const void *pixels, size_t bytes, vit_text *why) {
     if (!d->compare && !d->print)
         return VIT_OK;
-    uint64_t hash = vit_hash(pixels, bytes);
+    uint64_t hash = vit_hash_frame(pixels, d->format, bytes);
     if (d->compare) {
         uint64_t golden = vit_golden(v, index);
         d->checked++;

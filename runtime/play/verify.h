@@ -8,6 +8,7 @@
 
 typedef struct verdict {
     bool compare, print; /* --verify, --hash */
+    vit_format format;   /* of the frames */
     uint64_t checked;    /* frames compared with their golden hash */
     uint64_t differing;  /* of these, not equal */
     uint32_t first;      /* frame of the first difference */

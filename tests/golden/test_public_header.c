@@ -56,7 +56,7 @@ static const char users_program[] =
     "    void *frame = malloc(need.frame_bytes);\n"
     "    for (uint32_t i = 0; i < need.frames; i++) {\n"
     "        if (vit_frame(v, i, frame, need.frame_bytes / need.height, &why)) return puts(why.text), 6;\n"
-    "        if (vit_hash(frame, need.frame_bytes) != vit_golden(v, i)) return 4;\n"
+    "        if (vit_hash_frame(frame, info.format, need.frame_bytes) != vit_golden(v, i)) return 4;\n"
     "    }\n"
     "    vit_close(v); free(frame); free(info.arena); free(pack); fclose(f);\n"
     "    return 0;\n"

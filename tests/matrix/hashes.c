@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
     int differ = 0;
     for (uint32_t i = 0; status == VIT_OK && i < need.frames; i++) {
         status = vit_frame(v, i, frame, need.frame_bytes / need.height, &why);
-        const uint64_t golden = vit_golden(v, i), hash = vit_hash(frame, need.frame_bytes);
+        const uint64_t golden = vit_golden(v, i), hash = vit_hash_frame(frame, info.format, need.frame_bytes);
         differ += golden != hash;
         printf("%016" PRIx64 " %016" PRIx64 "\n", golden, hash);
     }

@@ -1,4 +1,4 @@
-/* raw: tightly packed frames one after another, in the asked format and the host's byte order; no header. */
+/* raw: tightly packed frames one after another, in the asked format and the machine's byte order; no header. */
 #include "sink.h"
 #include "output.h"
 #include "../failure.h"
@@ -39,7 +39,7 @@ static vit_status raw_close(void *state, vit_text *why) {
 const sink_kind sink_raw = {
     .name = "raw",
     .target = "FILE|-",
-    .meaning = "tightly packed frames in --format, one after another",
+    .meaning = "tightly packed frames in --format and this machine's byte order",
     .stream = true,
     .any_format = true,
     .open = raw_open,
