@@ -1,5 +1,5 @@
 # Vitrine. `make demo` and `make test` do everything on a fresh machine; `make help` lists the rest.
-#   config=release|debug|sanitize|fuzz   (default release; each builds into build/$(config))
+#   config=release|debug|sanitize|fuzz|coverage   (default release; each builds into build/$(config))
 #   OPENCL=0                        without OpenCL: the built-in device `host` alone
 config ?= release
 OPENCL ?= 1
@@ -19,8 +19,10 @@ OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-
 else ifeq ($(config),fuzz)
 CC := clang
 OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+else ifeq ($(config),coverage)
+OPT := -O1 -g --coverage
 else
-$(error config must be release, debug, sanitize or fuzz, got '$(config)')
+$(error config must be release, debug, sanitize, fuzz or coverage, got '$(config)')
 endif
 MACHINE := $(shell $(CC) -dumpmachine)
 # There GCC, asked for C11, makes doubles of floats, because the C library's float_t is one; asked for speed, it does not.
@@ -56,8 +58,8 @@ HOST_LANES := 1 8 16
 HOST_ISAS := $(if $(filter x86_64-%,$(MACHINE)),avx512 avx2) baseline
 HOST_FLAGS_avx2 := -mavx2 -mfma
 HOST_FLAGS_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mprefer-vector-width=512
-ifneq ($(filter sanitize fuzz,$(config)),)
-HOST_LANES := 1 $(if $(filter sanitize,$(config)),8)
+ifneq ($(filter sanitize fuzz coverage,$(config)),)
+HOST_LANES := 1 $(if $(filter fuzz,$(config)),,8)
 HOST_ISAS := baseline
 endif
 HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
@@ -131,6 +133,7 @@ $(B)/make-scenes: $(call obj,$(SCENES))
 include tests/test.mk
 include tests/fuzz.mk
 include tests/lint.mk
+include tests/coverage.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
@@ -172,9 +175,10 @@ help:
 	@echo "make matrix   same bits: OpenCL devices, threads, lanes, instruction sets, other machines under qemu; one line a row"
 	@echo "make numeric  hard cases: the worst error of each against its bound, one table; CSV and plots in build/numeric"
 	@echo "make lint     clang-tidy and cppcheck over our sources"
+	@echo "make coverage lines of runtime/ and kernels/ that tests run: build/coverage.txt"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make install  prefix=$(prefix)"
-	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz"
+	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz|coverage"
 
 clean:
 	rm -rf build

@@ -39,9 +39,9 @@ static void assert_equal_work(const vit_statistics *a, const vit_statistics *b, 
 }
 
 /* Counts of frame 1, or of the only one, and its hash. */
-static vit_statistics count(const char *pack, uint32_t lanes, uint32_t group, uint64_t *hash) {
+static vit_statistics count(const char *pack, uint32_t device, uint32_t lanes, uint32_t group, uint64_t *hash) {
     open_pack p;
-    pack_open(&p, pack, (vit_open_info){.lanes = lanes, .group = group, .count_work = 1});
+    pack_open(&p, pack, (vit_open_info){.device = device, .lanes = lanes, .group = group, .count_work = 1});
     (void)pack_frame_hash(&p, 0);
     *hash = pack_frame_hash(&p, p.need.frames > 1 ? 1 : 0);
     vit_statistics s = pack_stats(&p);
@@ -49,24 +49,30 @@ static vit_statistics count(const char *pack, uint32_t lanes, uint32_t group, ui
     return s;
 }
 
-/* Most of the time is PoCL's compiler, which makes each width and group size anew: not every pack in all ways. */
+/* Most of the time is PoCL's compiler, which makes each width and group size anew: not every pack in all ways, and the device host for
+ * widths where it stands for them. */
 static void counts_are_the_same_for_any_lanes_and_groups(void **state) {
     (void)state;
     static const struct {
-        uint32_t lanes, group;
+        uint32_t device, lanes, group;
         size_t packs; /* the first of them */
-    } ways[] = {{1, 0, 6}, {16, 0, 6}, {8, 0, 2}, {1, 64, 1}, {16, 2, 1}};
+    } ways[] = {{VIT_DEVICE_HOST, 1, 0, 6}, {0, 16, 0, 3}, {VIT_DEVICE_HOST, 16, 0, 6}, {0, 1, 0, 2}, {0, 8, 0, 2}, {0, 1, 64, 1}, {0, 16, 2, 1}};
     static vit_statistics s[sizeof ways / sizeof ways[0]]; /* large for a stack */
     for (size_t i = 0; i < 6; i++)
         for (size_t w = 0; w < sizeof ways / sizeof ways[0] && i < ways[w].packs; w++) {
             uint64_t hash;
             char what[96];
-            (void)snprintf(what, sizeof what, "%s, lanes %u, group %u", packs[i], ways[w].lanes, ways[w].group);
-            s[w] = count(packs[i], ways[w].lanes, ways[w].group, &hash);
+            (void)snprintf(what, sizeof what, "%s, device %x, lanes %u, group %u", packs[i], ways[w].device, ways[w].lanes, ways[w].group);
+            s[w] = count(packs[i], ways[w].device, ways[w].lanes, ways[w].group, &hash);
             assert_equal_work(&s[0], &s[w], ways[w].lanes == ways[0].lanes, what);
-            if (w == 4)
+            if (ways[w].lanes == 16)
                 assert_equal_work(&s[1], &s[w], 1, what);
         }
+}
+
+/* The first two packs are also counted by OpenCL's device, whose compiler takes long; the test above holds both devices' counts together. */
+static uint32_t device_for(const char *pack) {
+    return strcmp(pack, packs[0]) == 0 || strcmp(pack, packs[1]) == 0 ? 0 : VIT_DEVICE_HOST;
 }
 
 static void counting_changes_no_bit(void **state) {
@@ -74,8 +80,8 @@ static void counting_changes_no_bit(void **state) {
     for (size_t i = 0; i < PACKS; i++) {
         open_pack p;
         uint64_t hash;
-        const vit_statistics counted = count(packs[i], 0, 0, &hash);
-        pack_open(&p, packs[i], (vit_open_info){0});
+        const vit_statistics counted = count(packs[i], device_for(packs[i]), 0, 0, &hash);
+        pack_open(&p, packs[i], (vit_open_info){.device = device_for(packs[i])});
         const uint64_t plain = pack_frame_hash(&p, p.need.frames > 1 ? 1 : 0);
         const vit_statistics s = pack_stats(&p);
         assert_true(hash == plain);
@@ -99,6 +105,7 @@ static counted *count_and_read(const char *pack, vit_open_info how) {
     counted *c = calloc(1, sizeof *c);
     assert_non_null(c);
     how.count_work = 1;
+    how.device = device_for(pack);
     pack_open(&c->p, pack, how);
     pack_frame(&c->p, 1);
     c->s = pack_stats(&c->p);

@@ -186,7 +186,7 @@ static void what_is_left_out_has_its_default(void **state) {
     assert_true(s.lights[0].inner == 0.0 && s.lights[0].outer == 45.0 && s.lights[0].photons && !s.lights[0].window);
     assert_true(s.quality.photons == 17000 && s.quality.bounces == 4 && s.quality.radius == 0.0 && s.quality.tile == 32);
     assert_true(!s.quality.buckets && !s.quality.raw && s.quality.flatten == 0.0 && !s.quality.normal_keys);
-    assert_true(s.quality.indirect_samples == 1 && s.quality.texture_filter == FILTER_BILINEAR);
+    assert_true(s.quality.indirect_samples == 16 && s.quality.texture_filter == FILTER_BILINEAR);
     assert_true(s.quality.vertex_bits == 32 && s.quality.normal_bits == 16 && s.quality.sample_bits == 32);
     scene_free(&s);
 }
