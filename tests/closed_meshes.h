@@ -1,5 +1,5 @@
-/* Closed meshes, and rays from inside them at vertices, along edges and anywhere: where two triangles that share an edge may each
- * find the ray just outside themselves. */
+/* Closed meshes, and rays from inside them at vertices, along edges and anywhere: where two triangles that share an edge may
+ * each find the ray just outside themselves. */
 #ifndef VIT_TESTS_CLOSED_MESHES_H
 #define VIT_TESTS_CLOSED_MESHES_H
 

@@ -22,9 +22,12 @@ static inline char *octree_source(const char *before) {
     return text;
 }
 
-static inline lab octree_lab_open(const char *more_kernels) {
+#define OCTREE_WITH_FMA " -DOCTREE_FUSED=1"
+
+/* options: "" or OCTREE_WITH_FMA. */
+static inline lab octree_lab_open(const char *options, const char *more_kernels) {
     char *source = octree_source(more_kernels);
-    lab l = lab_open(1, 0, source);
+    lab l = lab_open_with(1, 0, options, source);
     free(source);
     return l;
 }

@@ -1,12 +1,12 @@
-/* The source's octree and triangle test (METHODS.md W, tests/baselines/) against our BVH and watertight test, one process, in turn,
- * the same rays on the same device: view rays, and shadow rays of their hits. Hits are compared before anything is timed; what
- * both do for a ray is counted apart, untimed. Then what leaks at shared edges. Cut-outs are filled on both sides. */
+/* The source's octree and triangle test (METHODS.md W, tests/baselines/) against our BVH and watertight test, one process, in
+ * turn, the same rays on the same device: view rays, and shadow rays of their hits. Hits are compared before anything is timed;
+ * what both do for a ray is counted apart, untimed. Then what leaks at shared edges. Cut-outs are filled on both sides. */
 #include "measure.h" /* before scene.h, whose type its parameter hides */
 #include "octree_leaks.h"
 #include "octree_scenes.h"
 #include "octree_sides.h"
 
-#define ROUNDS 9
+#define ROUNDS 7
 #define NEAR_TIE 1e-4f /* of the distance: another triangle so near is a shared edge or a tie */
 
 enum { SIDE_OCTREE, SIDE_1, SIDE_8, SIDE_16, SIDES };
@@ -41,9 +41,10 @@ static void verify_view(const race *r, side sides[SIDES]) {
         else
             near++;
     }
-    printf("%-8s view rays: %u, hits %u, the same triangle or none %u; another at the same distance %u; the octree's ray goes on "
-           "to a farther one %u, to nothing %u, ends at a nearer one %u\n",
-           r->scene, n, hits, same, tie, far, lost, near);
+    printf(
+        "%-8s view rays: %u, hits %u, the same triangle or none %u; another at the same distance %u; the octree's ray goes on "
+        "to a farther one %u, to nothing %u, ends at a nearer one %u\n",
+        r->scene, n, hits, same, tie, far, lost, near);
     if (same + tie < 0.999 * n)
         bench_fail("%s: the octree's hits are not the BVH's", r->scene);
     for (int s = SIDE_8; s < SIDES; s++) {
@@ -127,9 +128,9 @@ static race race_run(raced_scene *place) {
 static void report_trees(csv *c, const race *r) {
     const double mib = 1.0 / (1 << 20), nodes = (double)sizeof(octree_node) * r->o.node_count;
     const series build[] = {series_exact(r->o.build_seconds), series_exact(r->tree_seconds)};
-    printf("%-8s %8u | %9u %9u %5u %9u %7.1f %7.2f | %9u %5u %7.1f %7.2f\n", r->scene, r->triangles, r->o.node_count, r->o.empty,
-           r->o.depth, r->o.index_count, (nodes + 4.0 * r->o.index_count) * mib, build[0].value[0], r->tree_nodes, r->tree_depth,
-           (double)sizeof(vit_bvh_node) * r->tree_nodes * mib, build[1].value[0]);
+    printf("%-8s %8u | %9u %9u %5u %9u %7.1f %7.2f | %9u %5u %7.1f %7.2f\n", r->scene, r->triangles, r->o.node_count,
+           r->o.empty, r->o.depth, r->o.index_count, (nodes + 4.0 * r->o.index_count) * mib, build[0].value[0], r->tree_nodes,
+           r->tree_depth, (double)sizeof(vit_bvh_node) * r->tree_nodes * mib, build[1].value[0]);
     csv_row(c, r->scene, PICTURE_SIZE, "octree, build", &build[0], "s");
     csv_row(c, r->scene, PICTURE_SIZE, "BVH, build", &build[1], "s");
 }
@@ -165,7 +166,8 @@ static void report(csv *c, const race *races, int count) {
            "entries", "MiB", "s", "BVH nodes", "depth", "MiB", "s");
     for (int i = 0; i < count; i++)
         report_trees(c, &races[i]);
-    printf("\nM rays/s, medians of %d; BVH at 1, 8, 16 lanes over the octree; a ray's octants entered, or boxes tested at 1, 8, 16 "
+    printf("\nM rays/s, medians of %d; BVH at 1, 8, 16 lanes over the octree; a ray's octants entered, or boxes tested at 1, "
+           "8, 16 "
            "lanes, and triangles tested\n%-8s %-12s %8s %8s %8s %8s %7s %7s %7s\n",
            ROUNDS, "scene", "rays", "octree", "BVH 1", "BVH 8", "BVH 16", "1", "8", "16");
     for (int i = 0; i < count; i++)

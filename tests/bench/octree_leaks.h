@@ -1,5 +1,5 @@
-/* Rays from inside closed meshes, as tests/numeric/test_watertight.c casts them: how many find nothing by the watertight test, and
- * by Moeller and Trumbore's. */
+/* Rays from inside closed meshes, as tests/numeric/test_watertight.c casts them: how many find nothing by the watertight test,
+ * and by Moeller and Trumbore's. */
 #ifndef VIT_BENCH_OCTREE_LEAKS_H
 #define VIT_BENCH_OCTREE_LEAKS_H
 
@@ -13,6 +13,11 @@
 
 /* By what rays are aimed at: triangle_place() in host_rays.h. */
 enum { AT_VERTEX, AT_EDGE, AT_MIDDLE_OF_EDGE, AT_ANY, AIMS };
+
+/* Moeller and Trumbore's test with products rounded, or fused with the sum. */
+enum { LEAKS_PLAIN, LEAKS_FUSED, LEAKS_KINDS };
+static const char *const leaks_names[LEAKS_KINDS] = {"M.-T.", "M.-T., fma"};
+static const char *const leaks_options[LEAKS_KINDS] = {"", OCTREE_WITH_FMA};
 
 typedef struct leaks {
     uint64_t rays, ours, theirs[AIMS];
@@ -31,42 +36,52 @@ static inline void leaks_count(lab *l, const ray_mesh *r, const octree *o, const
     hits_free(&theirs);
 }
 
-static inline void leaks_report(csv *c, const char *what, const leaks *sum) {
+static inline void leaks_report(csv *c, const char *mesh, const char *rival, const leaks *sum) {
     const uint64_t all = sum->theirs[0] + sum->theirs[1] + sum->theirs[2] + sum->theirs[3];
-    const double quarter = (double)sum->rays / AIMS / 100.0;
+    const double percent = 100.0 * AIMS / (double)sum->rays;
     const series ours = series_exact((double)sum->ours), theirs = series_exact((double)all);
-    printf("%-36s %9llu %6llu %9llu %9.3f %9.3f %9.3f %9.4f   %u of %u\n", what, (unsigned long long)sum->rays,
-           (unsigned long long)sum->ours, (unsigned long long)all, (double)sum->theirs[AT_VERTEX] / quarter,
-           (double)sum->theirs[AT_EDGE] / quarter, (double)sum->theirs[AT_MIDDLE_OF_EDGE] / quarter,
-           (double)sum->theirs[AT_ANY] / quarter, sum->still, sum->checked);
-    csv_row(c, "closed", what, "leaks, ours", &ours, "rays");
-    csv_row(c, "closed", what, "leaks, Moeller-Trumbore", &theirs, "rays");
+    char what[96];
+    printf("%-36s %-10s %8llu %5llu %7llu", mesh, rival, (unsigned long long)sum->rays, (unsigned long long)sum->ours,
+           (unsigned long long)all);
+    for (int i = 0; i < AIMS; i++)
+        printf(" %8.4f", percent * (double)sum->theirs[i]);
+    printf("   %u of %u\n", sum->still, sum->checked);
+    csv_row(c, "closed", mesh, "leaks, ours", &ours, "rays");
+    snprintf(what, sizeof what, "leaks, %s", rival);
+    csv_row(c, "closed", mesh, what, &theirs, "rays");
     if (sum->ours > 0)
-        bench_fail("%s: ours leak", what);
+        bench_fail("%s: ours leak", mesh);
+}
+
+static inline leaks leaks_of(lab *l, const closed_mesh *mesh) {
+    ray_mesh r;
+    leaks sum = {0};
+    uint64_t state = 7;
+    mesh_cube(&r, mesh->squares, mesh->place);
+    mesh_bake(&r);
+    octree o = octree_of(&r, OCTREE_USUAL);
+    ray_set s = rays_new(LEAK_BATCH);
+    for (int batch = 0; batch < LEAK_BATCHES; batch++) {
+        closed_aim(&s, &r, &state, mesh->half);
+        leaks_count(l, &r, &o, &s, &sum);
+    }
+    free(s.plane);
+    octree_free(&o);
+    mesh_free(&r);
+    return sum;
 }
 
 static inline void leaks_compare(csv *c) {
-    lab l = octree_lab_open(ray_lab_kernels);
-    printf("\n%-36s %9s %6s %9s %9s %9s %9s %9s   %s\n", "rays that leak", "rays", "ours", "M.-T.", "vertex %", "edge %",
-           "middle %", "any %", "without the octree too");
-    for (int i = 0; i < CLOSED_MESHES; i++) {
-        ray_mesh r;
-        leaks sum = {0};
-        uint64_t state = 7;
-        mesh_cube(&r, closed_meshes[i].squares, closed_meshes[i].place);
-        mesh_bake(&r);
-        octree o = octree_of(&r, OCTREE_USUAL);
-        ray_set s = rays_new(LEAK_BATCH);
-        for (int batch = 0; batch < LEAK_BATCHES; batch++) {
-            closed_aim(&s, &r, &state, closed_meshes[i].half);
-            leaks_count(&l, &r, &o, &s, &sum);
+    printf("\n%-36s %-10s %8s %5s %7s %8s %8s %8s %8s   %s\n", "rays that leak", "rival", "rays", "ours", "rival's", "vertex %",
+           "edge %", "middle %", "any %", "rival's without the octree too");
+    for (int kind = 0; kind < LEAKS_KINDS; kind++) {
+        lab l = octree_lab_open(leaks_options[kind], ray_lab_kernels);
+        for (int i = 0; i < CLOSED_MESHES; i++) {
+            const leaks sum = leaks_of(&l, &closed_meshes[i]);
+            leaks_report(c, closed_meshes[i].what, leaks_names[kind], &sum);
         }
-        leaks_report(c, closed_meshes[i].what, &sum);
-        free(s.plane);
-        octree_free(&o);
-        mesh_free(&r);
+        lab_close(&l);
     }
-    lab_close(&l);
 }
 
 #endif

@@ -85,14 +85,14 @@ static inline ray_set rays_of_view(const raced_scene *r) {
     return s;
 }
 
-/* One ray to the light from each hit whose side that the camera sees faces it, from a little off the surface. Returns how many in
- * *count; the others are not cast. */
+/* One ray to the light from each hit whose side that the camera sees faces it, from a little off the surface. Returns how many
+ * in *count; the others are not cast. */
 static inline ray_set rays_of_shadow(const raced_scene *r, const ray_set *view, const float *distance, const uint32_t *triangle,
                                      uint32_t *count) {
     ray_set s = rays_new(view->n);
     *count = 0;
     for (uint32_t i = 0; i < s.n; i++) {
-        float o[3], d[3], facing = 0, n2 = 0, seen = 0, lit = 0;
+        float o[3], d[3], n2 = 0, seen = 0, lit = 0;
         rays_get(view, i, o, d);
         rays_limit(&s)[i] = RAY_NOT_CAST;
         if (triangle[i] == VIT_NONE)
@@ -111,8 +111,7 @@ static inline ray_set rays_of_shadow(const raced_scene *r, const ray_set *view, 
             d2 += to[k] * to[k];
             lit += to[k] * n[k];
         }
-        facing = lit * seen;
-        if (!(facing > 0) || !(d2 > 0))
+        if (!(lit * seen > 0) || !(d2 > 0))
             continue;
         unit_float(to);
         rays_set(&s, i, o, to, sqrtf(d2));

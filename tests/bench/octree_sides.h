@@ -1,5 +1,5 @@
-/* The sides of the octree's bench: the octree, and the library's BVH kernels at 1, 8 and 16 lanes; each a program of its own with
- * the same options on the same device, casting the same rays from memory, 256 rays a work-group. */
+/* The sides of the octree's bench: the octree, and the library's BVH kernels at 1, 8 and 16 lanes; each a program of its own
+ * with the same options on the same device, casting the same rays from memory, 256 rays a work-group. */
 #ifndef VIT_BENCH_OCTREE_SIDES_H
 #define VIT_BENCH_OCTREE_SIDES_H
 
@@ -14,7 +14,8 @@ static const char side_kernels[] =
     "    ray_packet r = ray_make(lv3_load_planes(rays, n, first), lv3_load_planes(VIT_PLANE(rays, 3, n), n, first)); \\\n"
     "    lf t = L_LOAD(VIT_PLANE(rays, 6, n) + first); \\\n"
     "    li active = L_GE(t, L_F(0))\n"
-    "kernel void bvh_nearest(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float *distance,\n"
+    "kernel void bvh_nearest(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global float "
+    "*distance,\n"
     "                        global uint *triangle)\n"
     "{\n"
     "    BVH_RAYS;\n"
@@ -33,7 +34,8 @@ static const char side_kernels[] =
     "    L_STORE(L_AS_UINT(dark & 1), occluded + first);\n"
     "}\n"
     "#if VIT_COUNT_WORK\n"
-    "kernel void bvh_work_of(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global const uint *any,\n"
+    "kernel void bvh_work_of(RAY_SCENE_PARAMETERS, global const float *rays, global const uint *count, global const uint "
+    "*any,\n"
     "                        global uint2 *done)\n"
     "{\n"
     "    BVH_RAYS;\n"
@@ -83,7 +85,8 @@ static inline void side_bvh_buffers(side *s, const ray_mesh *m) {
 }
 
 /* lanes 0: the octree `o`. */
-static inline side side_open(const char *name, unsigned lanes, const ray_mesh *m, const octree *o, uint32_t n, bool count_work) {
+static inline side side_open(const char *name, unsigned lanes, const ray_mesh *m, const octree *o, uint32_t n,
+                             bool count_work) {
     side s = {.name = name, .lanes = lanes ? lanes : 1, .is_octree = lanes == 0, .n = n};
     char *source = s.is_octree ? octree_source("") : NULL;
     s.l = lab_open_with(s.lanes, 0, count_work ? " -DVIT_COUNT_WORK=1" : "", source ? source : side_kernels);
@@ -102,7 +105,8 @@ static inline side side_open(const char *name, unsigned lanes, const ray_mesh *m
 
 static inline void side_rays(side *s, int cast, const ray_set *rays) {
     s->rays[cast] = lab_buffer(&s->l, rays->plane, 28 * (size_t)rays->n);
-    const cl_mem nearest[] = {s->rays[cast], s->count, s->distance, s->triangle}, any[] = {s->rays[cast], s->count, s->occluded};
+    const cl_mem nearest[] = {s->rays[cast], s->count, s->distance, s->triangle},
+                 any[] = {s->rays[cast], s->count, s->occluded};
     s->kernel[cast] = cast == CAST_VIEW ? side_kernel(s, s->is_octree ? "octree_nearest" : "bvh_nearest", nearest, 4)
                                         : side_kernel(s, s->is_octree ? "octree_any" : "bvh_any", any, 3);
 }

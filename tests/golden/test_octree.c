@@ -1,10 +1,10 @@
 /* The baseline octree (tests/baselines/) is right, and leaks where ours does not.
  *
  * A rival that is wrong proves nothing when it is slower. So its tree is held to the loop over all triangles with the same
- * triangle test, to the bit: least distance in (0, limit], among equal ones the smallest index; small leaves and deep trees make
- * the walk long, and boxes on whole numbers, some of them twice, put rays into the octants' planes and make ties. The test on
- * closed meshes is about what Moeller and Trumbore's triangle test lets through at shared edges: that the baseline leaks is the
- * point, since it shows that these rays would find a leak in ours. */
+ * triangle test, to the bit: least distance in (0, limit], among equal ones the smallest index; small leaves and deep trees
+ * make the walk long, and boxes on whole numbers, some of them twice, put rays into the octants' planes and make ties. The test
+ * on closed meshes is about what Moeller and Trumbore's triangle test lets through at shared edges: that the baseline leaks is
+ * the point, since it shows that these rays would find a leak in ours. */
 #include "baselines/octree_lab.h"
 #include "closed_meshes.h"
 #include "ray_trees.h"
@@ -16,7 +16,7 @@ static lab device;
 
 static int open_device(void **state) {
     (void)state;
-    device = octree_lab_open(ray_lab_kernels);
+    device = octree_lab_open("", ray_lab_kernels);
     return 0;
 }
 
@@ -47,8 +47,8 @@ static void make_random(ray_mesh *r, uint32_t triangles) {
     }
 }
 
-/* From inside and outside the root's box; some along axes and in planes, with zeros of both signs, some from whole numbers, some
- * that end early. */
+/* From inside and outside the root's box; some along axes and in planes, with zeros of both signs, some from whole numbers,
+ * some that end early. */
 static ray_set mixed_rays(void) {
     ray_set s = rays_new(RAYS);
     uint64_t state = 5;
@@ -113,16 +113,16 @@ static void nearest_hits_on_whole_numbers_are_those_of_the_loop_over_all(void **
     check_trees(&r, RAYS / 4);
 }
 
-/* Middles and corners of small boxes against a triangle whose plane cuts off a corner. */
+/* Boxes of edge 1 about the triangle x + y + z = 3; the last is apart from it across an edge alone. */
 static void a_triangle_touches_the_boxes_that_it_meets(void **state) {
     static const vit_triangle t = {.v0 = {3, 0, 0}, .v1 = {0, 3, 0}, .v2 = {0, 0, 3}};
     static const double half[3] = {0.5, 0.5, 0.5};
     static const struct {
         double middle[3];
         bool touches;
-    } cases[] = {{{1, 1, 1}, true},           {{0, 0, 0}, false},      {{0.4, 0.4, 0.6}, false}, {{0.5, 0.5, 0.6}, true},
-                 {{1.6, 1.6, 1.6}, false},    {{1.4, 1.4, 1.4}, true}, {{3.4, 0, 0}, true},      {{3.6, 0, 0}, false},
-                 {{2.4, 1.4, -0.6}, false},   {{1.9, 1.9, 0.4}, true}, {{2.1, 2.1, 0.4}, false},   {{2.1, 2.0, -0.45}, false}};
+    } cases[] = {{{1, 1, 1}, true},         {{0, 0, 0}, false},      {{0.4, 0.4, 0.6}, false}, {{0.5, 0.5, 0.6}, true},
+                 {{1.6, 1.6, 1.6}, false},  {{1.4, 1.4, 1.4}, true}, {{3.4, 0, 0}, true},      {{3.6, 0, 0}, false},
+                 {{2.4, 1.4, -0.6}, false}, {{1.9, 1.9, 0.4}, true}, {{2.1, 2.1, 0.4}, false}, {{2.1, 2.0, -0.45}, false}};
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         if (octree_touches(cases[i].middle, half, &t) != cases[i].touches)
@@ -142,8 +142,8 @@ static void check_leaks(const closed_mesh *c) {
     const uint32_t kept = hits_leaks(&ours), lost = hits_leaks(&plain);
     uint32_t checked;
     const uint32_t still = octree_lost_without_tree(&device, &o, &s, &plain, 256, &checked);
-    printf("%-36s of %u rays leak: %u ours, %u Moeller-Trumbore; of %u of these without the octree too: %u\n", c->what, s.n, kept,
-           lost, checked, still);
+    printf("%-36s of %u rays leak: %u ours, %u Moeller-Trumbore; of %u of these without the octree too: %u\n", c->what, s.n,
+           kept, lost, checked, still);
     assert_int_equal(kept, 0);
     assert_in_range(lost, 1, s.n);
     assert_int_equal(still, checked);
