@@ -18,6 +18,9 @@ $(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_
 
 NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
 $(NUMERIC_PROGRAMS): $(HOST_LAB)
+# The sources' plain methods, which nothing of the product uses.
+OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
+$(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
@@ -28,6 +31,8 @@ $(B)/tests/golden/test_reference_runs.o: CFLAGS_ALL += $(if $(LIBS_COST),-DVIT_M
 $(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"' -DVIT_LIBS='"$(LIBS_RUNTIME)"'
+# It casts rays with the tests' laboratory.
+$(B)/tests/bench/bench_octree: private LIBS_COST += -lcmocka
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
