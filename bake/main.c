@@ -20,7 +20,7 @@ typedef struct bake {
 static void on_signal(int number) {
     static const char line[] = "\nvitrine-bake: interrupted\n";
     (void)number;
-    pack_abandon(); /* NOLINT(bugprone-signal-handler,cert-sig30-c): it does nothing but unlink(), which POSIX allows here */
+    pack_abandon(); /* NOLINT(bugprone-signal-handler,cert-sig30-c,cert-msc54-cpp): it does nothing but unlink(), which POSIX allows here */
     if (write(STDERR_FILENO, line, sizeof line - 1) < 0)
         _exit(VIT_FAILED);
     _exit(VIT_FAILED);

@@ -60,7 +60,8 @@ static bool sees_patch(const sight *s, const receiver *r, vec3 from, uint32_t pa
         if (!(zones_kernel(s->z, r->p, r->n, eye_point(s->z, p, k)->p) > 0.0f))
             continue;
         seen += sees(s->z, from, s->eyes[(size_t)patch_number * EYES + k]);
-        if (++looked == FIRST_EYES && (seen == 0 || seen == looked))
+        looked++;
+        if (looked == FIRST_EYES && (seen == 0 || seen == looked))
             break;
     }
     return 2 * seen >= looked;

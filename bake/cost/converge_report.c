@@ -54,7 +54,7 @@ static void print_series(const converge_results *r, const char *name, size_t fie
 }
 
 static report_axis axis_of(const converge_results *r, bool errors) {
-    double values[3 * CONVERGE_MOST];
+    double values[3 * CONVERGE_MOST] = {0};
     report_axis a = {0.1, 10};
     for (uint32_t i = 0; i < r->count; i++) {
         const converge_step *s = &r->steps[i];

@@ -98,7 +98,7 @@ static vit_status read_row(reader *r, work_budget *out, vit_text *why) {
     uint64_t sum, max, frames = out->end - out->first;
     if (!split(r->text, words, 4) || !read_u64(words[2], UINT64_MAX, &sum) || !read_u64(words[3], UINT64_MAX, &max))
         return bad(r, why, "must be 'PASS KIND SUM MAX', or 'end' on the last line");
-    if (max > sum || max < sum / frames)
+    if (max > sum || max < sum / frames) /* NOLINT(clang-analyzer-core.DivideZero): read_head() wants first < end */
         return bad(r, why, "the maximum of a frame cannot be that, with this sum over the frames");
     if (find(out, words[0], words[1]) != NULL)
         return bad(r, why, "a second line of this pass and kind");
