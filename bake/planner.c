@@ -198,7 +198,10 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
 
 double plan_radius(const plan *p, double stored) {
     const double of_one = sqrt(p->lit_area / (3.14159265358979 * stored)); /* its disc holds one photon on average */
-    return fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
+    const double radius = fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
+    int exponent;
+    const double fraction = frexp(radius, &exponent); /* to 12 bits: rays' lengths may differ in their last bits from processor to processor */
+    return ldexp(floor(fraction * 4096 + 0.5) / 4096, exponent);
 }
 
 void plan_set_radius(plan *p, double radius, vit_photon *baked) {

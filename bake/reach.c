@@ -34,7 +34,7 @@ typedef struct search {
     atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of all lights' power */
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
-    float *path;         /* a side: mean length of the rays of step 2 that found something, m */
+    float *path;         /* a side: summed length of the rays of step 2 that found something, m */
     float threshold;
     atomic_ullong shot;
 } search;
@@ -87,15 +87,13 @@ static uint32_t look(const search *s, uint32_t side, uint32_t i, float *distance
 static void gather(void *user, uint32_t side) {
     search *s = user;
     float sum = 0.0f;
-    uint32_t finds = 0;
     for (uint32_t i = 0; i < GATHER_RAYS; i++) {
         float distance;
         const uint32_t found = look(s, side, i, &distance);
         s->found[(size_t)side * GATHER_RAYS + i] = found;
         sum += found != RAY_NOTHING ? distance : 0.0f;
-        finds += found != RAY_NOTHING;
     }
-    s->path[side] = finds ? sum / (float)finds : 0.0f;
+    s->path[side] = sum;
     const double area = triangle_area(s->g->triangles + side / 2);
     s->direct[side] = (float)((double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE / area);
     s->irradiance[side] = s->direct[side];
@@ -165,15 +163,16 @@ static void ask_again(void *user, uint32_t side) {
     atomic_fetch_add_explicit(&s->shot, rays, memory_order_relaxed);
 }
 
-/* Mean length of the ways between sides, m, each with the light that goes it; 0: light finds no side. */
+/* Mean length of the ways between sides, m, each with the light that goes it; light that leaves the scene goes none. 0: all does. */
 static double mean_free_path(const search *s) {
     double sum = 0.0, light = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {
-        if (!(s->path[side] > 0.0f))
-            continue;
         const double flux = triangle_area(s->g->triangles + side / 2) * (double)s->irradiance[side];
+        uint32_t finds = 0;
+        for (uint32_t i = 0; i < GATHER_RAYS; i++)
+            finds += s->found[(size_t)side * GATHER_RAYS + i] != RAY_NOTHING;
         sum += flux * (double)s->path[side];
-        light += flux;
+        light += flux * finds;
     }
     return light > 0.0 ? sum / light : 0.0;
 }

@@ -1,5 +1,5 @@
 /* reach.c: sides of triangles that light does not reach, directly or after any number of reflections: insides of walls,
- * touching faces. */
+ * touching faces. And, found with the same rays, how far light goes from side to side. */
 #ifndef VIT_BAKE_REACH_H
 #define VIT_BAKE_REACH_H
 

@@ -23,6 +23,9 @@
 #define VIT_WORD 4u /* bytes of every field of every record, and so what a machine of the other byte order swaps by */
 
 /* Does this machine have numbers in another order than the file? */
+#ifndef __BYTE_ORDER__
+#error "say by __BYTE_ORDER__ and __ORDER_BIG_ENDIAN__, as GCC and Clang do, in which order this machine's numbers lie"
+#endif
 #define VIT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.

@@ -183,7 +183,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
-        lf weights = L_F(0), x = L_FROM_INT(pixel & 3) * (1.0f / SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * (1.0f / SPARSE_STEP);
+        lf weights = L_F(0), x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
                 uint from = around[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)], k = cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW;

@@ -47,6 +47,10 @@ static void list_isas(vit_text *why) {
 
 static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
     const host_program *program = vit_host_find(info->host_isa, l->lanes);
+    if (info->wide_divide) {
+        snprintf(why->text, sizeof why->text, "device host: wide_divide is for devices of OpenCL");
+        return VIT_USAGE;
+    }
     if (!program) {
         snprintf(why->text, sizeof why->text, "device host: no kernels for '%s' with %u lanes here; there are: ",
                  info->host_isa ? info->host_isa : "this machine", l->lanes);

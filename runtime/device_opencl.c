@@ -211,10 +211,14 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
 static vit_status check_arithmetic(vit_opencl *d, int ask_wide, vit_text *why) {
     static const cl_device_fp_config needed = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST;
     cl_device_fp_config config = 0, doubles = 0;
+    cl_bool little = CL_TRUE;
     clGetDeviceInfo(d->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof config, &config, NULL);
     clGetDeviceInfo(d->id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof doubles, &doubles, NULL);
+    clGetDeviceInfo(d->id, CL_DEVICE_ENDIAN_LITTLE, sizeof little, &little, NULL);
     d->wide_divide = ask_wide || !(config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT);
-    if ((config & needed) != needed)
+    if ((little == CL_TRUE) == (VIT_BIG_ENDIAN != 0))
+        snprintf(why->text, sizeof why->text, "OpenCL: the device's order of bytes is not this machine's");
+    else if ((config & needed) != needed)
         snprintf(why->text, sizeof why->text, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
     else if (d->wide_divide && !doubles)
         snprintf(why->text, sizeof why->text, "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");

@@ -1,5 +1,6 @@
 /* The one table of knobs, and what its rows can be set to. */
 #include "knob_parts.h"
+#include "planner.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -86,8 +87,11 @@ void knobs_help(void) {
 
 bool knob_same(const knob_setting *a, const knob_setting *b) {
     char text_a[SCENE_QUALITY], text_b[SCENE_QUALITY];
-    scene_quality_text(&a->quality, text_a, sizeof text_a);
-    scene_quality_text(&b->quality, text_b, sizeof text_b);
+    scene_quality of_a = a->quality, of_b = b->quality;
+    of_a.effective_area = of_a.effective_area && !plan_leaves_area_out(&of_a);
+    of_b.effective_area = of_b.effective_area && !plan_leaves_area_out(&of_b);
+    scene_quality_text(&of_a, text_a, sizeof text_a);
+    scene_quality_text(&of_b, text_b, sizeof text_b);
     return a->scale == b->scale && a->lanes == b->lanes && strcmp(text_a, text_b) == 0;
 }
 

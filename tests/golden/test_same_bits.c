@@ -79,8 +79,8 @@ static const variant one_at_a_time[] = {
     {"POCL_DEVICES=pthread", ""},
     {METHOD("loops"), ""},
     {METHOD("loopvec"), ""},
-    {"", "--wide-divide"},
-    {"", "--wide-divide --lanes 1"},
+    {"", "--device 0 --wide-divide"},
+    {"", "--device 0 --wide-divide --lanes 1"},
 };
 
 /* The same settings, several at once: fewer runs that still hold each kind of lanes, groups, threads and devices. */

@@ -1,6 +1,7 @@
 /* Dark sides. Random rays decide, so the tests use scenes in which the answer is beyond doubt: closed boxes, boxes with a hole,
  * faces that touch. The front of a box's face is outside. What must never happen is a lit side that is called dark; several
  * tests are about what could lead to it: small triangles, cut-outs, lights that are somewhere for one frame only. */
+#include "planner.h"
 #include "reach.h"
 #include <math.h>
 #include <setjmp.h>
@@ -308,6 +309,54 @@ static void one_thread_and_two_flag_the_same_sides(void **state) {
     drop(f);
 }
 
+/* Of chords of a convex body that begin evenly over its surface and along the cosine the mean is 4 volumes over the surface. All
+ * faces of a cube are alike, so light that does not lie evenly has the same mean. */
+static void light_goes_the_mean_chord_of_a_cube(void **state) {
+    (void)state;
+    for (int size = 1; size <= 4; size *= 4) {
+        fixture *f = make();
+        const float s = (float)size;
+        add_box(f, (const float[]){0, 0, 0}, (const float[]){s, s, s}, 12);
+        add_light(f, 0.5f * s, 0.5f * s, 0.5f * s);
+        search(f, 1);
+        const double one = f->r.free_path, chord = 4.0 * s * s * s / (6.0 * s * s);
+        assert_true(fabs(one / chord - 1.0) < 0.02);
+        search(f, 3);
+        assert_memory_equal(&f->r.free_path, &one, sizeof one);
+        drop(f);
+    }
+}
+
+static void light_that_leaves_the_scene_goes_no_way(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_plate(f, (const float[]){-50, 0, -50}, (const float[]){0, 0, 100}, (const float[]){100, 0, 0}, 20);
+    add_light(f, 0, 1, 0);
+    search(f, 2);
+    assert_true(f->r.free_path >= 0.0 && f->r.free_path <= 0.0); /* an even floor: light finds nothing */
+    drop(f);
+}
+
+/* The radius "auto": a fifth of the way, but 4 to 150 photons a disc, and always a number that is one. */
+static void the_automatic_radius_follows_the_way_of_light_within_bounds(void **state) {
+    static const double ways[] = {0.0, 0.1, 1.0, 5.0, 1e30, (double)NAN};
+    (void)state;
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        const plan p = {.lit_area = 100.0, .free_path = ways[i]};
+        double last = INFINITY;
+        for (double stored = 1.0; stored < 1e9; stored *= 3.0) {
+            const double radius = plan_radius(&p, stored), held = 3.14159265358979 * radius * radius * stored / 100.0;
+            assert_true(held > 4.0 * 0.999 && held < 150.0 * 1.001);
+            assert_true(radius <= last);
+            last = radius;
+            if (held > 4.01 && held < 149.0)
+                assert_true(fabs(radius / (0.2 * ways[i]) - 1.0) < 0.001);
+        }
+    }
+    const plan room = {.lit_area = 100.0, .free_path = 3.0};
+    assert_true(fabs(plan_radius(&room, 2000.0) - 0.6) < 0.001);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_inside_of_a_closed_box_is_dark_and_its_outside_lit),
@@ -322,6 +371,9 @@ int main(void) {
         cmocka_unit_test(a_spot_light_lights_only_its_cone),
         cmocka_unit_test(without_light_nothing_is_flagged),
         cmocka_unit_test(one_thread_and_two_flag_the_same_sides),
+        cmocka_unit_test(light_goes_the_mean_chord_of_a_cube),
+        cmocka_unit_test(light_that_leaves_the_scene_goes_no_way),
+        cmocka_unit_test(the_automatic_radius_follows_the_way_of_light_within_bounds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
