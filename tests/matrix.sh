@@ -46,6 +46,7 @@ for name in list zones buckets atrium; do
     for method in ${pocl:+loops loopvec}; do
         row "PoCL work-group method $method" env POCL_WORK_GROUP_METHOD=$method POCL_CACHE_DIR="$out/pocl-$method" sh -c "mkdir -p $out/pocl-$method; exec $play $pack --device $pocl"
     done
+    [ -z "$pocl" ] || row "PoCL again" $play "$pack" --device $pocl
     for lanes in ${pocl:+1 8 16}; do
         row "PoCL, divisions through doubles, $lanes lanes" $play "$pack" --device $pocl --wide-divide --lanes $lanes
     done
