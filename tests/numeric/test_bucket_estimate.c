@@ -8,6 +8,7 @@
  * 1e-6 of the weights. What rounding decides is left out: photons within 1e-6 of a bucket's edge, or of coming from behind for
  * all of a cluster. */
 #include "catalogue.h"
+#include "edited_pack.h"
 #include "list_check.h"
 #include "oracle/buckets.h"
 
@@ -104,16 +105,16 @@ static list_check check_samples(const bucket_frame *b, uint64_t *dark_wrong) {
     return c;
 }
 
-static void check_pack(const char *name, double samples_bound) {
+static void check_pack(const char *name, const char *pack_name, pack_edit *edit, double samples_bound) {
     open_pack p;
     uint64_t dark_wrong = 0;
     char text[96];
-    pack_open(&p, name, (vit_open_info){.device = VIT_DEVICE_HOST});
+    pack_open_edited(&p, pack_name, edit);
     pack_frame(&p, p.need.frames - 1);
     const vit_statistics stats = pack_stats(&p);
+    assert_int_equal(stats.dropped_entries + stats.dropped_samples, 0);
     bucket_frame b = {.f = view_frame_read(&p, p.need.frames - 1)};
     float *buckets = read_buffer(&p, B_buckets);
-    assert_false(b.f.s->effects & VIT_EFFECT_BIT_FLATTENED);
     find_clusters(&b);
     assert_int_equal(b.count, stats.clusters);
     b.each = b.f.s->effects & VIT_EFFECT_BIT_RAW_BUCKETS ? ORACLE_DIRECTIONS : ORACLE_OCTANTS;
@@ -121,12 +122,12 @@ static void check_pack(const char *name, double samples_bound) {
     const list_check sums = check_sums(&b), samples = check_samples(&b, &dark_wrong);
     (void)printf("%s: %zu clusters; %llu of %llu buckets lit\n", name, b.count, (unsigned long long)sums.lit,
                  (unsigned long long)sums.samples);
-    assert_true(sums.lit > b.count && samples.lit > samples.samples / 4);
     (void)snprintf(text, sizeof text, "%s: buckets against sums over all photons", name);
     catalogue_row("buckets", text, sums.worst, 1e-6, "of the largest bucket");
     (void)snprintf(text, sizeof text, "%s: samples against the buckets' light in double", name);
     catalogue_row("buckets", text, samples.worst, samples_bound, "of the largest irradiance");
     assert_int_equal(dark_wrong, 0);
+    assert_true(sums.lit > b.count && samples.lit > samples.samples / 4);
     free(b.clusters);
     free(buckets);
     view_frame_free(&b.f);
@@ -135,22 +136,48 @@ static void check_pack(const char *name, double samples_bound) {
 
 static void smooth_buckets(void **state) {
     (void)state;
-    check_pack("buckets", 1e-5);
-    check_pack("room-buckets", 1e-5);
+    check_pack("buckets", "buckets", NULL, 1e-5);
+    check_pack("room-buckets", "room-buckets", NULL, 1e-5);
+}
+
+static void fewer_slices(vit_scene *s, vit_camera *cameras, vit_light *lights) {
+    (void)cameras;
+    (void)lights;
+    assert_true(s->slice_count > 3);
+    s->slice_first++;
+    s->slice_count -= 2;
+}
+
+static void samples_before_and_behind_all_slices(void **state) {
+    (void)state;
+    check_pack("buckets; slices too few", "buckets", fewer_slices, 1e-5);
+}
+
+static void flatten(vit_scene *s, vit_camera *cameras, vit_light *lights) {
+    (void)cameras;
+    (void)lights;
+    s->effects |= VIT_EFFECT_BIT_FLATTENED;
+    s->flatten = 15;
+}
+
+static void flattened_buckets(void **state) {
+    (void)state;
+    check_pack("buckets; flattened", "buckets", flatten, 1e-5);
 }
 
 static void buckets_with_zones_and_normal_keys(void **state) {
     (void)state;
-    check_pack("zones-buckets", 1e-5);
+    check_pack("zones-buckets", "zones-buckets", NULL, 1e-5);
 }
 
 static void raw_buckets(void **state) {
     (void)state;
-    check_pack("raw", 5e-7);
+    check_pack("raw", "raw", NULL, 5e-7);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(smooth_buckets), cmocka_unit_test(buckets_with_zones_and_normal_keys),
-                                       cmocka_unit_test(raw_buckets)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(smooth_buckets), cmocka_unit_test(samples_before_and_behind_all_slices),
+                                       cmocka_unit_test(flattened_buckets),
+                                       cmocka_unit_test(buckets_with_zones_and_normal_keys), cmocka_unit_test(raw_buckets)};
     return cmocka_run_group_tests_name("bucket estimate", tests, NULL, NULL);
 }

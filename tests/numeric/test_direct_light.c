@@ -1,19 +1,20 @@
 /* View samples and the direct light at them, against closed forms in double.
  *
  * What can go wrong: a sample is another pixel's, or behind its surface; a light's cone, range or distance is taken wrongly; a
- * shadow is missed, or is there where nothing is in the way. The bounds: a position is the eye and a float's distance along a
- * float's direction, and some roundings more at grazing angles, of the distance; on the grid of small samples it is rounded to
- * the nearest step, half a step an axis and what the float before it was off. Light is a dozen roundings, of the largest in the
- * frame. A shadow is right or wrong: rays within a millionth of the scene's size of an edge or a plane, or a thousandth of a
- * texel from a hole's, are left out and counted. */
+ * shadow is missed, or is there where nothing is in the way, or reaches beyond the light. The bounds: a position is the eye and
+ * a float's distance along a float's direction, and some roundings more at grazing angles, of the distance; on the grid of
+ * small samples it is rounded to the nearest step, half a step an axis and what the float before it was off. Light is a dozen
+ * roundings, of the largest in the frame. A shadow is right or wrong: rays within a millionth of the scene's size of an edge or
+ * a plane, or a thousandth of a texel from a hole's, are left out and counted. */
 #include "catalogue.h"
 #include "oracle/direct_light.h"
+#include "edited_pack.h"
 #include "view_frame.h"
 
 static open_pack pack;
 
-static view_frame open_frame(const char *name) {
-    pack_open(&pack, name, (vit_open_info){.device = VIT_DEVICE_HOST});
+static view_frame open_frame(const char *name, pack_edit *edit) {
+    pack_open_edited(&pack, name, edit);
     pack_frame(&pack, pack.need.frames - 1);
     return view_frame_read(&pack, pack.need.frames - 1);
 }
@@ -32,7 +33,7 @@ static void none(const char *name, const char *what, uint64_t wrong, uint64_t co
 
 /* How far positions are from where they should be; small ones from 0.87 steps off the surface, which keeps them before it. */
 static void check_positions(const char *name, double bound) {
-    view_frame f = open_frame(name);
+    view_frame f = open_frame(name, NULL);
     const bool small = f.s->effects & VIT_EFFECT_BIT_SMALL_SAMPLES;
     const double step = (double)f.s->grid_step;
     vit_triangle *triangles = read_buffer(&pack, B_triangles);
@@ -48,7 +49,8 @@ static void check_positions(const char *name, double bound) {
             const double far = oracle_hit_point(f.s, f.camera, triangles + f.hit[i], x, y, p, face);
             for (int k = 0; k < 3; k++) {
                 off[k] = own.position[k] - p[k];
-                worst = fmax(worst, small ? fabs(off[k] - 0.87 * step * face[k]) / step : fabs(off[k]) / far);
+                const double error = small ? fabs(off[k] - 0.87 * step * face[k]) / step : fabs(off[k]) / far;
+                worst = isfinite(error) ? fmax(worst, error) : INFINITY;
             }
             seen++;
             behind += oracle_dot(off, face) < (small ? -0.02 * step : -0.5 * (double)f.s->ray_offset);
@@ -130,8 +132,8 @@ static void check_sample(const lit *l, uint32_t i, light_check *c) {
 }
 
 /* edges: how many samples rounding may decide, of all. */
-static void check_light(const char *name, uint32_t stride, double edges) {
-    lit l = {.f = open_frame(name)};
+static void check_light(const char *name, const char *pack_name, pack_edit *edit, uint32_t stride, double edges) {
+    lit l = {.f = open_frame(pack_name, edit)};
     vit_light *lights = read_buffer(&pack, B_lights);
     light_check c = {0};
     const bool textured = l.f.s->effects & (VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT);
@@ -149,10 +151,10 @@ static void check_light(const char *name, uint32_t stride, double edges) {
             check_sample(&l, i, &c);
     (void)printf("%s: %llu samples, %llu open, %llu in full shadow, %llu doubtful\n", name, (unsigned long long)c.samples,
                  (unsigned long long)c.open, (unsigned long long)c.shadowed, (unsigned long long)c.doubtful);
-    assert_true(c.open > c.samples / 4 && c.shadowed > c.samples / 100);
     row(name, "radiance against albedo / pi times the closed form", c.worst / c.largest, 1e-6, "of the largest");
     none(name, "samples lit that no light reaches", c.shadows_wrong, c.samples, "samples");
     row(name, "samples left out; near an edge", (double)c.doubtful / (double)c.samples, edges, "of all");
+    assert_true(c.open > c.samples / 4 && c.shadowed > c.samples / 100);
     free(lights);
     free(l.albedo);
     free(l.direct);
@@ -168,13 +170,30 @@ static void check_light(const char *name, uint32_t stride, double edges) {
 
 static void light_is_the_closed_form_or_is_shadowed(void **state) {
     (void)state;
-    check_light("list", 7, 0.01);
-    check_light("small", 7, 0);
-    check_light("room", 1, 0.01);
+    check_light("list", "list", NULL, 7, 0.01);
+    check_light("small", "small", NULL, 7, 0);
+    check_light("room", "room", NULL, 1, 0.01);
+}
+
+/* Ranges that end in the room, of one light by a window alone. */
+static void shorten(vit_scene *s, vit_camera *cameras, vit_light *lights) {
+    (void)cameras;
+    assert_true(s->lights == 2 && s->effects & VIT_EFFECT_BIT_RANGE);
+    for (uint32_t i = 0; i < s->frames; i++) {
+        lights[2 * i].inv_range2 = 1 / (1.5f * 1.5f);
+        lights[2 * i].falloff = VIT_FALLOFF_WINDOW;
+        lights[2 * i + 1].inv_range2 = 1 / (1.75f * 1.75f);
+    }
+}
+
+static void ranges_end_where_they_say(void **state) {
+    (void)state;
+    check_light("room; short ranges; one a window", "room", shorten, 1, 0.01);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(samples_are_where_rays_hit),
-                                       cmocka_unit_test(light_is_the_closed_form_or_is_shadowed)};
+                                       cmocka_unit_test(light_is_the_closed_form_or_is_shadowed),
+                                       cmocka_unit_test(ranges_end_where_they_say)};
     return cmocka_run_group_tests_name("direct light", tests, NULL, NULL);
 }

@@ -54,18 +54,25 @@ static inline uint32_t oracle_bucket(const vit_scene *s, const float travel[3], 
 }
 
 /* Sums of power times 1 - d^2 / r^2 at the middle of the cluster's box, over the photons that come from the front for some
- * normal in its box of normals, or with zones, that some sample accepts. */
+ * normal in its box of normals, or with zones, that some sample accepts. Flattened along the middle of the box of normals. */
 static inline void oracle_fill(const vit_scene *s, const vit_photon *photons, const oracle_cluster *c, oracle_buckets *b) {
     *b = (oracle_buckets){0};
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = c->nlo[k] + c->nhi[k];
+    const double middle2 = oracle_dot(middle, middle);
     for (uint32_t i = 0; i < s->photons; i++) {
         const vit_photon *q = photons + i;
-        double d2 = 0, least = 0;
+        double d2 = 0, least = 0, off = 0;
         int near;
         for (int k = 0; k < 3; k++) {
             const double o = (double)q->position[k] - 0.5 * (c->lo[k] + c->hi[k]), d = (double)q->direction[k];
             d2 += o * o;
+            off += o * middle[k];
             least += fmin(d * c->nlo[k], d * c->nhi[k]);
         }
+        if (s->effects & VIT_EFFECT_BIT_FLATTENED && middle2 > 0)
+            d2 += off * off / middle2 * (double)s->flatten;
         if (!(q->radius2 > 0) || d2 >= (double)q->radius2)
             continue;
         const double weight = 1 - d2 / (double)q->radius2;
