@@ -5,8 +5,8 @@
  * photon's, or a cluster's, whole share. The bounds: a bucket is a sum over photons, one rounding an added one, of the largest
  * bucket in the frame. A sample is weighed between clusters by places in float, which round to 1e-7 of the scene, over a tile's
  * width there, of which a room has some ten, and by a logarithm that is off by 1e-7 and multiplied by the slices a doubling:
- * 1e-6 of the weights. What rounding decides is left out: photons within 1e-6 of a bucket's edge, or of coming from behind for
- * all of a cluster. */
+ * a few 1e-6 of a weight. What rounding decides is left out: photons within 1e-6 of a bucket's edge, or of coming from behind
+ * for all of a cluster. */
 #include "catalogue.h"
 #include "edited_pack.h"
 #include "list_check.h"
