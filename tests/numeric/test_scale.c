@@ -142,7 +142,7 @@ static void distance_from_the_origin_changes_no_bit(void **state) {
         count++;
     }
     catalogue_sweep("offset", "distance from the origin by translate (m)", "NMSE against the same at the origin", moved, count);
-    catalogue_sweep("offset_in_file", "distance from 0 of the mesh file's own numbers (m)", "NMSE against the same at the origin", in_file, count);
+    catalogue_sweep("offset_in_file", "distance from 0 of the numbers in the mesh file (m)", "NMSE against the same at the origin", in_file, count);
     catalogue_none("far away", "distances to 5e5 m by translate that change a bit", wrong, count, "distances");
     catalogue_row("far away", "the mesh file's own numbers far from 0; where nothing warns", worst, 3e-10, "NMSE");
 }
