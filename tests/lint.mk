@@ -6,7 +6,7 @@ LINT_STAMPS := $(LINTED:%.c=build/lint/%.ok)
 # Not found by cppcheck: that a setting's list takes over a block through memcpy(), that a status guards a structure, that an error's
 # text is written before it is read, that a file's bytes mean that it is open. It takes pow() in a list of initialisers for a call without
 # a use, and %d of a bit for a fault; Debian 13's says of each long function that it did not try all branches.
-CPPCHECK := --enable=warning,performance,portability --std=c11 --quiet --error-exitcode=1 --suppress=memleak:bake/scene.c \
+CPPCHECK := -D__BYTE_ORDER__=1234 -D__ORDER_BIG_ENDIAN__=4321 --enable=warning,performance,portability --std=c11 --quiet --error-exitcode=1 --suppress=memleak:bake/scene.c \
             --suppress=uninitStructMember:bake/bounds.c --suppress=ignoredReturnValue:bake/cost/report_axes.c \
             --suppress=ctuuninitvar --suppress=invalidPrintfArgType_sint:runtime/device_opencl.c \
             --suppress=duplicateAssignExpression --suppress=nullPointerOutOfResources:bake/import_texture.c \
