@@ -155,14 +155,14 @@ static void automatic_view(const scene *s, const model *m, int frame, view *v) {
     v->exposure = 0.5 * PI / automatic_irradiance; /* white there shows as 0.5 */
 }
 
-/* Above the box and before it as the camera sees it, 36 degrees ahead on its way round: what the camera looks at is lit. */
-/* Its light would be stronger than a pack holds. */
+/* The automatic light would be stronger than a pack holds. */
 static bool too_large_for_automatic(const model *m) {
     double center[3];
     const double radius = box_center(m, center);
     return !(automatic_irradiance * (1.6 * 1.6 + 1.1 * 1.1) * radius * radius <= (double)VIT_MAX_INTENSITY);
 }
 
+/* Above the box and before it as the camera sees it, 36 degrees ahead on its way round: what the camera looks at is lit. */
 static void automatic_light(const scene *s, const model *m, int frame, scene_light_key *key) {
     const double radius = box_center(m, key->position);
     const double angle = 2.0 * PI * (double)frame / (double)s->frames + PI / 5.0;

@@ -38,6 +38,19 @@ static inline void scene_lab_close(scene_lab *l) {
     (void)rmdir(l->folder);
 }
 
+/* For a group of tests that share one. */
+static inline int scene_lab_set_up(void **state) {
+    static scene_lab lab;
+    scene_lab_open(&lab);
+    *state = &lab;
+    return 0;
+}
+
+static inline int scene_lab_tear_down(void **state) {
+    scene_lab_close(*state);
+    return 0;
+}
+
 /* Path of a file in the folder. */
 static inline const char *scene_lab_path(scene_lab *l, const char *name) {
     char path[96];
@@ -53,6 +66,18 @@ static inline FILE *scene_lab_create(scene_lab *l, const char *name) {
     FILE *f = fopen(scene_lab_path(l, name), "w");
     assert_non_null(f);
     return f;
+}
+
+/* A closed box of half the edges `half` about (at, 0, at), without materials. */
+static inline void scene_lab_write_room(scene_lab *l, const char *name, const double half[3], double at) {
+    static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}};
+    FILE *f = scene_lab_create(l, name);
+    for (int i = 0; i < 8; i++)
+        (void)fprintf(f, "v %.17g %.17g %.17g\n", at + (i & 4 ? half[0] : -half[0]), i & 2 ? half[1] : -half[1],
+                      at + (i & 1 ? half[2] : -half[2]));
+    for (int i = 0; i < 6; i++)
+        (void)fprintf(f, "f %d %d %d %d\n", side[i][0], side[i][1], side[i][2], side[i][3]);
+    (void)fclose(f);
 }
 
 /* Runs a program of the build with the words of `line`, split at spaces; it must succeed. What it prints is shown only if not.
@@ -90,13 +115,23 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
     fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
 }
 
-/* Bakes `scene`, a file of the folder or a whole path, with more options; what the baker says is in out.txt. */
+/* Bakes `scene`, a file of the folder or a whole path, with more options; then scene_lab_said(). */
 static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *options) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit");
     (void)snprintf(line, sizeof line, "%s -o %s --quiet --device host %s",
                    scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
+}
+
+/* Did the program that ran last say this? */
+static inline bool scene_lab_said(scene_lab *l, const char *text) {
+    char said[4096];
+    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
+    assert_non_null(f);
+    said[fread(said, 1, sizeof said - 1, f)] = '\0';
+    (void)fclose(f);
+    return strstr(said, text) != NULL;
 }
 
 /* Plays what was baked: `pixels` takes the radiance of `view`, times exposure, of all frames, four floats a pixel. */

@@ -85,13 +85,18 @@ void knobs_help(void) {
         printf("  %-16s %s\n", knob_table[k].name, knob_table[k].what);
 }
 
+/* As scene_quality_text(), without what has no effect. */
+static void text_of_effect(const scene_quality *q, char *text, size_t size) {
+    scene_quality plain = *q;
+    if (plan_leaves_area_out(q))
+        plain.effective_area = false;
+    scene_quality_text(&plain, text, size);
+}
+
 bool knob_same(const knob_setting *a, const knob_setting *b) {
     char text_a[SCENE_QUALITY], text_b[SCENE_QUALITY];
-    scene_quality of_a = a->quality, of_b = b->quality;
-    of_a.effective_area = of_a.effective_area && !plan_leaves_area_out(&of_a);
-    of_b.effective_area = of_b.effective_area && !plan_leaves_area_out(&of_b);
-    scene_quality_text(&of_a, text_a, sizeof text_a);
-    scene_quality_text(&of_b, text_b, sizeof text_b);
+    text_of_effect(&a->quality, text_a, sizeof text_a);
+    text_of_effect(&b->quality, text_b, sizeof text_b);
     return a->scale == b->scale && a->lanes == b->lanes && strcmp(text_a, text_b) == 0;
 }
 

@@ -76,11 +76,6 @@ static int set_up(void **state) {
     return 0;
 }
 
-static int tear_down(void **state) {
-    scene_lab_close(*state);
-    return 0;
-}
-
 static double analytic(double area) {
     double sum = 0, part = 1;
     for (int k = 1; k < BOUNCES; k++)
@@ -240,5 +235,5 @@ int main(void) {
         cmocka_unit_test(effective_areas_keep_the_light),
         cmocka_unit_test(raw_buckets_and_the_flattened_kernel_are_only_reported),
     };
-    return cmocka_run_group_tests_name("furnace", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("furnace", tests, set_up, scene_lab_tear_down);
 }

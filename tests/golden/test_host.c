@@ -41,6 +41,8 @@ static void a_device_or_instruction_set_that_there_is_not_is_refused(void **stat
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "baseline");
     tool(&r, TOOL_PLAY " %s --device host --threads 0", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "--threads");
+    tool(&r, TOOL_PLAY " %s --device host --wide-divide", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "wide_divide");
 }
 
 static void the_baker_makes_the_same_bytes_without_opencl(void **state) {

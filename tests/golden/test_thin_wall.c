@@ -62,11 +62,6 @@ static int set_up(void **state) {
     return 0;
 }
 
-static int tear_down(void **state) {
-    scene_lab_close(*state);
-    return 0;
-}
-
 static double mean(const picture p, int view) {
     double sum = 0.0;
     for (size_t i = (size_t)view * SIDE * SIDE; i < (size_t)(view + 1) * SIDE * SIDE; i++)
@@ -116,5 +111,5 @@ int main(void) {
         cmocka_unit_test(less_than_a_hundredth_gets_into_buckets_with_zones),
         cmocka_unit_test(much_gets_through_without_zones),
     };
-    return cmocka_run_group_tests_name("thin wall", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("thin wall", tests, set_up, scene_lab_tear_down);
 }

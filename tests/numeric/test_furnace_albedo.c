@@ -36,11 +36,6 @@ static int set_up(void **state) {
     return 0;
 }
 
-static int tear_down(void **state) {
-    scene_lab_close(*state);
-    return 0;
-}
-
 static double closed_form(double albedo, int bounces) {
     double sum = 0, part = 1;
     for (int k = 1; k < bounces; k++)
@@ -95,5 +90,5 @@ static void coloured_rooms_keep_each_channels_share(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(black_rooms_give_nothing), cmocka_unit_test(white_rooms_keep_all_light),
                                        cmocka_unit_test(coloured_rooms_keep_each_channels_share)};
-    return cmocka_run_group_tests_name("furnace albedo", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("furnace albedo", tests, set_up, scene_lab_tear_down);
 }

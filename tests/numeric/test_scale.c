@@ -2,9 +2,9 @@
  *
  * What can go wrong: constants in metres hidden in kernels or baker (a least distance, a near plane, the offset of rays), powers that
  * overflow or vanish, coordinates that are too far apart as floats. The bounds: nothing in the method knows metres, so a power of two
- * changes no bit, and any other scale no more than what the roundings of coordinates do; a scene that `translate` puts far away is moved to the origin and
- * loses nothing; numbers that are large in the mesh file itself have lost their last bits there, before us. Where it stops to hold the
- * baker warns beforehand: the last point without a warning is held to a bound too. */
+ * changes no bit, and any other scale no more than what the roundings of coordinates do; a scene that `translate` puts far away is moved to the
+ * origin and loses nothing; numbers that are large in the mesh file itself have lost their last bits there, before us. Where
+ * that shows the baker warns beforehand: the last point without a warning is held to a bound. */
 #include "catalogue.h"
 #include "scene_lab.h"
 #include <math.h>
@@ -16,22 +16,11 @@ typedef struct frame {
     bool warned;
 } frame;
 
-static void write_room(scene_lab *l, double size, double at) {
-    static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}};
-    FILE *f = scene_lab_create(l, "room.obj");
-    for (int i = 0; i < 8; i++)
-        (void)fprintf(f, "v %.17g %.17g %.17g\n", at + (i & 4 ? 1.125 : -1.125) * size, (i & 2 ? 0.875 : -0.875) * size,
-                      at + (i & 1 ? 1.375 : -1.375) * size);
-    for (int i = 0; i < 6; i++)
-        (void)fprintf(f, "f %d %d %d %d\n", side[i][0], side[i][1], side[i][2], side[i][3]);
-    (void)fclose(f);
-}
-
 /* The room `size` times as large, `in_file` away in the mesh's own numbers and, with camera and light, `away` from the origin. Power
  * goes with the square of the size, so that radiance stays. */
 static void render_with(scene_lab *l, const char *options, double size, double in_file, double away, frame *out) {
-    char said[4096];
-    write_room(l, size, in_file);
+    const double half[3] = {1.125 * size, 0.875 * size, 1.375 * size};
+    scene_lab_write_room(l, "room.obj", half, in_file);
     FILE *f = scene_lab_create(l, "scene.cfg");
     const double x = away + 0.25 * size, y = 0.0, z = away + 0.75 * size, power = 1e-3 * size * size;
     (void)fprintf(f,
@@ -46,11 +35,7 @@ static void render_with(scene_lab *l, const char *options, double size, double i
                   0.5 * size, z, away, -0.875 * size, away, 5 * power, 4 * power, 3 * power, 0.5 * size);
     (void)fclose(f);
     scene_lab_bake(l, "scene.cfg", options);
-    f = fopen(scene_lab_path(l, "out.txt"), "r");
-    assert_non_null(f);
-    said[fread(said, 1, sizeof said - 1, f)] = '\0';
-    (void)fclose(f);
-    out->warned = strstr(said, "warning:") != NULL;
+    out->warned = scene_lab_said(l, "warning:");
     scene_lab_play(l, "final", out->pixels, FLOATS);
 }
 
@@ -147,18 +132,6 @@ static void distance_from_the_origin_changes_no_bit(void **state) {
     catalogue_row("far away", "the mesh file's own numbers far from 0; where nothing warns", worst, 3e-10, "NMSE");
 }
 
-static int set_up(void **state) {
-    static scene_lab lab;
-    scene_lab_open(&lab);
-    *state = &lab;
-    return 0;
-}
-
-static int tear_down(void **state) {
-    scene_lab_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scale_changes_the_frame_by_roundings_alone),
@@ -166,5 +139,5 @@ int main(void) {
         cmocka_unit_test(zones_areas_and_the_automatic_radius_follow_a_power_of_two),
         cmocka_unit_test(distance_from_the_origin_changes_no_bit),
     };
-    return cmocka_run_group_tests_name("scenes of all sizes, at all distances", tests, set_up, tear_down);
+    return cmocka_run_group_tests_name("scenes of all sizes, at all distances", tests, scene_lab_set_up, scene_lab_tear_down);
 }
