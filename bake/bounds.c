@@ -63,7 +63,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     vit_scene s = *in->scene;
     pack_sections sections = *in->sections;
     run r;
-    s.effects = (s.effects & ~vit_effects_upon(VIT_EFFECT_BIT_PHOTONS)) | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_LIST;
+    s.effects = (s.effects & ~vit_effects_upon(VIT_BIT(PHOTONS))) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
     s.cells = 0;
     s.paths = 0;
     s.baked = 1;
@@ -208,7 +208,7 @@ vit_status bounds_measure(bounds_input *in, vit_text *why) {
     s->slice_first = 0;
     s->slice_count = 1;
     s->max_nodes = s->max_list = 1;
-    if (s->effects & VIT_EFFECT_BIT_PHOTONS) {
+    if (s->effects & VIT_BIT(PHOTONS)) {
         status = vit_pack_derive(s, why); /* the shared constants of all runs */
         if (status == VIT_OK)
             status = measure_slices(in, why);

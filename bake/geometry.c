@@ -28,12 +28,25 @@ static void pack_triangle(const model *m, const uint32_t corner[3], vit_triangle
     t->nz = n[2];
 }
 
-static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t material, vit_attributes *a) {
+/* Normals that differ from the face's by less than about a milliradian do not count. */
+#define FLAT (1.0 - 1e-6)
+
+static bool is_flat(const model *m, const uint32_t corner[3], const vit_triangle *t) {
+    const double n[3] = {(double)t->nx, (double)t->ny, (double)t->nz}, length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (size_t i = 0; i < 3; i++) {
+        const float *v = m->normal + 3 * (size_t)corner[i];
+        if (!(fabs((double)v[0] * n[0] + (double)v[1] * n[1] + (double)v[2] * n[2]) >= FLAT * length))
+            return false;
+    }
+    return true;
+}
+
+static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t material, const vit_triangle *t, vit_attributes *a) {
     for (size_t i = 0; i < 3; i++) {
         a->normal[i] = normal_word(m->normal + 3 * (size_t)corner[i]);
         memcpy(a->uv[i], m->uv + 2 * (size_t)corner[i], sizeof a->uv[i]);
     }
-    a->material = material;
+    a->material = material | (is_flat(m, corner, t) ? 0 : VIT_TRIANGLE_SMOOTH);
 }
 
 /* How far rays leave a surface, metres. A computed hit position is wrong by some ulps of the largest coordinate that went into
@@ -64,7 +77,7 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
     for (uint32_t i = 0; i < m->triangles; i++) {
         const uint32_t *corner = m->index + 3 * (size_t)b->order[i];
         pack_triangle(m, corner, out->triangles + i);
-        pack_attributes(m, corner, m->material[b->order[i]], out->attributes + i);
+        pack_attributes(m, corner, m->material[b->order[i]], out->triangles + i, out->attributes + i);
     }
     out->ray_offset = ray_offset(m);
     return VIT_OK;

@@ -70,7 +70,7 @@ static vit_status explain(const bake *b, vit_text *why) {
            b->packed.bvh->depth);
     printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.reach->area, b->packed.reach->dark_front + b->packed.reach->dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height, 100 * p->atlas.occupancy);
-    if (s->effects & VIT_EFFECT_BIT_PHOTONS)
+    if (s->effects & VIT_BIT(PHOTONS))
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
                (double)s->radius);
     if (s->cells > 0)

@@ -37,7 +37,7 @@ static vec3 texel_color(const atlas *a, uint32_t word) {
 }
 
 /* As texture_level() of kernels/texture.clh. */
-static int mip_level(uint32_t effects, float footprint2, float doubled_area, float doubled_uv_area, float texels,
+static int mip_level(uint64_t effects, float footprint2, float doubled_area, float doubled_uv_area, float texels,
                      float *blend) {
     const float covered = footprint2 * fabsf(doubled_uv_area) * texels / float_max(doubled_area, 1e-30f);
     const float clamped = float_max(float_min(covered, 1e30f), 1e-30f);
@@ -45,7 +45,7 @@ static int mip_level(uint32_t effects, float footprint2, float doubled_area, flo
     memcpy(&bits, &clamped, sizeof bits);
     const int exponent = (bits >> 23) - 127;
     *blend = 0.0f;
-    if (!(effects & VIT_EFFECT_BIT_TRILINEAR))
+    if (!(effects & VIT_BIT(TRILINEAR)))
         return exponent < -1 ? 0 : (exponent + 1) >> 1;
     if (exponent < 0)
         return 0;
@@ -81,10 +81,10 @@ static vec3 texture_color(const photon_scene *s, const vit_texture *texture, flo
     const atlas *a = s->atlas;
     const vit_mip *mip = a->mips + texture->first_mip + (level < coarsest ? level : coarsest);
     const float u = wrap(x, texture->wrap_u), v = wrap(y, texture->wrap_v);
-    if (s->effects & VIT_EFFECT_BIT_NEAREST)
+    if (s->effects & VIT_BIT(NEAREST))
         return nearest_color(a, mip, u, v);
     const vec3 c = bilinear_color(a, mip, u, v);
-    if (!(s->effects & VIT_EFFECT_BIT_TRILINEAR) || level >= coarsest)
+    if (!(s->effects & VIT_BIT(TRILINEAR)) || level >= coarsest)
         return c;
     return vec3_along(c, vec3_sub(bilinear_color(a, mip + 1, u, v), c), blend);
 }

@@ -15,7 +15,7 @@ typedef struct photon_scene {
     const vit_material *materials;
     const atlas *atlas;
     float ray_offset, box_pad; /* of vit_scene, metres */
-    uint32_t effects;          /* of vit_scene: how textures are filtered */
+    uint64_t effects;          /* of vit_scene: how textures are filtered */
 } photon_scene;
 
 typedef struct photon_surface {

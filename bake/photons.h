@@ -22,7 +22,7 @@ typedef struct photons_input {
     const vit_material *materials; /* as in the pack */
     const atlas *atlas;
     float ray_offset, box_pad, radius; /* of vit_scene, metres */
-    uint32_t effects;                  /* of vit_scene */
+    uint64_t effects;                  /* of vit_scene */
     uint32_t bounces;                  /* of vit_scene */
     bool sequence;                     /* reflections follow a sequence rather than a hash: the effect SEQUENCE */
     uint32_t first_path;               /* number of the first path: those before it are traced while playing */

@@ -138,8 +138,8 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
                             .first_path = out->plan.scene.paths,
                             .radius = out->plan.scene.radius,
                             .bounces = out->plan.scene.bounces,
-                            .sequence = (out->plan.scene.effects & VIT_EFFECT_BIT_SEQUENCE) != 0,
-                            .cells = out->plan.scene.effects & VIT_EFFECT_BIT_ZONES && out->cells.count ? &out->cells : NULL,
+                            .sequence = (out->plan.scene.effects & VIT_BIT(SEQUENCE)) != 0,
+                            .cells = out->plan.scene.effects & VIT_BIT(ZONES) && out->cells.count ? &out->cells : NULL,
                             .lights = lights,
                             .light_count = count,
                             .progress = step,
@@ -164,8 +164,8 @@ static void measuring(void *user, const char *stage, double fraction) {
  * later: they depend on the radius. */
 static vit_status settle_radius(bounds_input *in, pipeline_packed *out, vit_text *why) {
     double stored;
-    const uint32_t effects = in->scene->effects;
-    in->scene->effects &= ~(uint32_t)(VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA);
+    const uint64_t effects = in->scene->effects;
+    in->scene->effects &= ~(VIT_BIT(ZONES) | VIT_BIT(AREA));
     vit_status status = bounds_count_photons(in, &stored, why);
     in->scene->effects = effects;
     if (status == VIT_OK && stored > 0)
@@ -220,7 +220,7 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .scene = &out->plan.scene,
                             .zones = c->quality.zones,
                             .by_light = c->quality.light_zones,
-                            .areas = (out->plan.scene.effects & VIT_EFFECT_BIT_AREA) != 0,
+                            .areas = (out->plan.scene.effects & VIT_BIT(AREA)) != 0,
                             .threads = p->threads,
                             .progress = step,
                             .user = p->progress};
@@ -246,9 +246,9 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
                        .progress = measuring,
                        .user = p->progress};
     vit_status status = VIT_OK;
-    if ((out->plan.scene.effects & VIT_EFFECT_BIT_PHOTONS) && !(c->quality.radius > 0))
+    if ((out->plan.scene.effects & VIT_BIT(PHOTONS)) && !(c->quality.radius > 0))
         status = settle_radius(&in, out, why);
-    if (status == VIT_OK && (out->plan.scene.effects & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA)))
+    if (status == VIT_OK && (out->plan.scene.effects & (VIT_BIT(ZONES) | VIT_BIT(AREA))))
         status = bake_zones(p, c, out, why);
     point_sections(p, out);
     cut_frames(c, out);

@@ -67,55 +67,56 @@ static void plan_materials(const model *m, const atlas *a, plan *p) {
         memcpy(to->emission, from->emission, sizeof to->emission);
         to->texture = a->material_texture ? a->material_texture[i] : VIT_NONE;
         to->cutout = from->cutoff > 0 && to->texture != VIT_NONE;
+        to->exponent = to->ior = 1.0f;
     }
 }
 
-static uint32_t effects_of_lights(const scene *s, const tracks *t) {
-    uint32_t e = t->light_count > 0 ? VIT_EFFECT_BIT_LIGHTS : 0;
+static uint64_t effects_of_lights(const scene *s, const tracks *t) {
+    uint64_t e = t->light_count > 0 ? VIT_BIT(LIGHTS) : 0;
     for (size_t i = 0; i < (size_t)s->frames * t->light_count; i++) {
         const vit_light *l = &t->lights[i];
         if (l->kind == VIT_LIGHT_SPOT)
-            e |= VIT_EFFECT_BIT_SPOT;
+            e |= VIT_BIT(SPOT);
         if (l->inv_range2 > 0 || l->falloff == VIT_FALLOFF_WINDOW)
-            e |= VIT_EFFECT_BIT_RANGE;
+            e |= VIT_BIT(RANGE);
     }
     return e;
 }
 
-static uint32_t effects_of_materials(const scene *s, const model *m, const plan *p) {
-    static const uint32_t filters[] = {[FILTER_NEAREST] = VIT_EFFECT_BIT_NEAREST, [FILTER_TRILINEAR] = VIT_EFFECT_BIT_TRILINEAR};
-    uint32_t e = 0, filter = filters[s->quality.texture_filter];
+static uint64_t effects_of_materials(const scene *s, const model *m, const plan *p) {
+    static const uint64_t filters[] = {[FILTER_NEAREST] = VIT_BIT(NEAREST), [FILTER_TRILINEAR] = VIT_BIT(TRILINEAR)};
+    uint64_t e = 0, filter = filters[s->quality.texture_filter];
     for (int i = 0; i < m->material_count; i++) {
         const vit_material *v = &p->materials[i];
         if (m->materials[i].triangles == 0)
             continue;
         if (v->texture != VIT_NONE)
-            e |= VIT_EFFECT_BIT_TEXTURES | filter;
+            e |= VIT_BIT(TEXTURES) | filter;
         if (v->cutout)
-            e |= VIT_EFFECT_BIT_CUTOUT;
+            e |= VIT_BIT(CUTOUT);
         if (v->emission[0] > 0 || v->emission[1] > 0 || v->emission[2] > 0)
-            e |= VIT_EFFECT_BIT_EMISSION;
+            e |= VIT_BIT(EMISSION);
     }
     return e;
 }
 
-static uint32_t effects_of_quality(const scene *s, const plan *p) {
+static uint64_t effects_of_quality(const scene *s, const plan *p) {
     bool baked = false;
     for (uint32_t i = 0; i < p->scene.lights; i++)
         baked |= p->baked_paths[i] > 0;
     if (p->scene.paths == 0 && !baked)
         return 0;
     const scene_quality *q = &s->quality;
-    uint32_t e = VIT_EFFECT_BIT_PHOTONS | (q->buckets ? VIT_EFFECT_BIT_BUCKETS : VIT_EFFECT_BIT_LIST);
-    e |= p->scene.paths > 0 ? VIT_EFFECT_BIT_TRACED : 0;
-    e |= q->buckets && q->raw ? VIT_EFFECT_BIT_RAW_BUCKETS : 0;
-    e |= q->flatten > 0 ? VIT_EFFECT_BIT_FLATTENED : 0;
-    e |= q->normal_keys ? VIT_EFFECT_BIT_NORMAL_KEYS : 0;
-    e |= q->zones ? VIT_EFFECT_BIT_ZONES : 0;
-    e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_EFFECT_BIT_AREA : 0;
-    e |= q->bounce_sequence ? VIT_EFFECT_BIT_SEQUENCE : 0;
-    e |= q->indirect_samples > 1 ? VIT_EFFECT_BIT_SPARSE : 0;
-    e |= q->indirect_samples == 16 ? VIT_EFFECT_BIT_SPARSE_16 : 0;
+    uint64_t e = VIT_BIT(PHOTONS) | (q->buckets ? VIT_BIT(BUCKETS) : VIT_BIT(LIST));
+    e |= p->scene.paths > 0 ? VIT_BIT(TRACED) : 0;
+    e |= q->buckets && q->raw ? VIT_BIT(RAW_BUCKETS) : 0;
+    e |= q->flatten > 0 ? VIT_BIT(FLATTENED) : 0;
+    e |= q->normal_keys ? VIT_BIT(NORMAL_KEYS) : 0;
+    e |= q->zones ? VIT_BIT(ZONES) : 0;
+    e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_BIT(AREA) : 0;
+    e |= q->bounce_sequence ? VIT_BIT(SEQUENCE) : 0;
+    e |= q->indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
+    e |= q->indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
     return e;
 }
 
@@ -172,6 +173,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     c->slice_near = (float)t->near;
     c->slice_scale = slice_scale(s, t);
     c->slice_count = 4096;
+    c->copies = 1;
     for (int k = 0; k < 3; k++)
         c->background[k] = (float)s->background[k];
     vit_status status = share_paths(s, t, out, why);
@@ -181,12 +183,15 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     }
     c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
     if (s->quality.sample_bits == 16) {
-        c->effects |= VIT_EFFECT_BIT_SMALL_SAMPLES;
+        c->effects |= VIT_BIT(SMALL_SAMPLES);
         plan_grid(m, c);
     }
+    for (uint32_t i = 0; i < m->triangles; i++)
+        if (g->attributes[i].material & VIT_TRIANGLE_SMOOTH)
+            c->effects |= VIT_BIT(SMOOTH);
     if (r->dark_sides > 0)
-        c->effects |= VIT_EFFECT_BIT_DARK_SIDES;
-    if (c->effects & VIT_EFFECT_BIT_PHOTONS) {
+        c->effects |= VIT_BIT(DARK_SIDES);
+    if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;
         double slots = (double)s->quality.photons * (s->quality.bounces - 1);
@@ -228,7 +233,7 @@ void plan_free(plan *p) {
 void plan_explain(const plan *p, plan_line_fn *line, void *user) {
     char text[256];
 #define X(bit, name, macro, why)                                                                                               \
-    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_EFFECT_BIT_##macro ? "called for since" : "not called for, would be if", \
+    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_BIT(macro) ? "called for since" : "not called for, would be if", \
              why);                                                                                                             \
     line(user, text);
     VIT_EFFECTS(X)

@@ -112,7 +112,7 @@ typedef struct vit_requirements {
     uint32_t width, height;    /* pixels */
     uint32_t frames;
     float fps;
-    uint32_t effects;          /* VIT_EFFECT_BIT_* of the pack */
+    uint64_t effects;          /* of the pack: vitrine_pack.h has their bits */
     size_t host_bytes;         /* arena; with VIT_DEVICE_HOST buffers too, but not what is used in place: the pack's sections and, if
                                 * it was given, vit_open_info.framebuffer. Big-endian machines: also a copy of the sections */
     uint64_t device_bytes;     /* sum of buffers[].bytes */

@@ -18,7 +18,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 3u
+#define VIT_PACK_VERSION 4u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD 4u /* bytes of every field of every record, and so what a machine of the other byte order swaps by */
 
@@ -30,7 +30,8 @@
 
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how much of
- * the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. */
+ * the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on area lights, then
+ * sets of directions to the sky. SKYT: the sky's picture. */
 #define VIT_SECTIONS(X)                                                                                                          \
     X(META, vit_scene, 1u)                                                                                                       \
     X(CAMS, vit_camera, s->frames)                                                                                               \
@@ -44,6 +45,8 @@
     X(ATLS, vit_u32, s->texels)                                                                                                  \
     X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                  \
     X(CELL, vit_cell, s->cells)                                                                                                  \
+    X(EMIT, vit_emitter, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                             \
+    X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                                               \
     X(PHOT, vit_photon, s->baked)                                                                                                \
     X(GOLD, vit_gold, s->frames)
 
@@ -78,10 +81,10 @@ typedef struct vit_pack_entry {
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
 
 /* The effect `bit` and all that make no sense without it. */
-static inline uint32_t vit_effects_upon(uint32_t bit) {
+static inline uint64_t vit_effects_upon(uint64_t bit) {
 #define X(effect, needed)                                                                                                        \
-    if (bit & (uint32_t)VIT_EFFECT_BIT_##needed)                                                                                 \
-        bit |= (uint32_t)VIT_EFFECT_BIT_##effect;
+    if (bit & VIT_BIT(needed))                                                                                                   \
+        bit |= VIT_BIT(effect);
     VIT_EFFECT_NEEDS(X)
 #undef X
     return bit;

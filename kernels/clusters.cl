@@ -36,14 +36,14 @@ static inline li cluster_direction(lv3 n)
 }
 
 #if VIT_WITH(PHOTONS)
-/* Clears what the frame counts up. */
-kernel void clear_masks(global const vit_scene *scene, global uint *masks, volatile global uint *counters)
+/* Clears what the round counts up; photons are those of the first round. */
+kernel void clear_masks(global const vit_scene *scene, uint round, global uint *masks, volatile global uint *counters)
 {
     uint i = (uint)get_global_id(0);
     if (i < scene->mask_words)
         masks[i] = 0;
     if (i < VIT_COUNTER_COUNT)
-        counters[i] = i == VIT_COUNTER_slice_min ? 0xffffffffu : 0;
+        counters[i] = i == VIT_COUNTER_slice_min ? 0xffffffffu : i == VIT_COUNTER_photons && round > 0 ? counters[i] : 0;
 }
 
 #endif

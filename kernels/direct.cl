@@ -1,4 +1,5 @@
-/* Pass 3: direct light with hard shadows. METHODS.md P, step 2, in radiometric units. */
+/* Pass 3: direct light: hard shadows of points and directions, soft ones of surfaces and the sky. METHODS.md P, step 2, in radiometric
+ * units. */
 
 /* Fraction of a light's intensity that goes into direction -l (l: unit, towards the light). glTF KHR_lights_punctual. */
 static inline lf light_cone(global const vit_light *light, lv3 l)
@@ -23,38 +24,163 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
     return l_div(window * window, d2);
 }
 
-#if VIT_WITH(LIGHTS)
-kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
-                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
+/* View samples as lights see them. */
+typedef struct lit_sample {
+    li hit;
+    lv3 p, n, v;             /* position; unit normal, unit direction to where it is seen from (with gloss) */
+    lf exponent;             /* of the lobe */
+    lv3 matt, glossy;        /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
+} lit_sample;
+
+static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, uint first, li hit, global const float *position,
+                                  global const uint *normal, global const float *rays, global const uint *gloss)
 {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
+    lit_sample s;
+    uint n = scene->samples;
+    s.hit = hit;
+    s.p = sample_position(scene, position, first);
+    s.n = l_decode_normal(L_LOAD(normal + first));
+    s.matt = s.glossy = s.v = lv3_set(L_F(0), L_F(0), L_F(0));
+    s.exponent = L_F(1);
+    if (VIT_EFFECT_GLOSS) {
+        s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1)) : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
+        s.exponent = L_AS_FLOAT(L_LOAD(gloss + n + first));
+    }
+    return s;
+}
+
+/* Adds light of power `intensity` from unit direction l: e, irradiance a unit of it. */
+static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity)
+{
+    lv3 light = lv3_set(intensity.x * e, intensity.y * e, intensity.z * e);
+    s->matt = lv3_set(s->matt.x + light.x, s->matt.y + light.y, s->matt.z + light.z);
+    if (VIT_EFFECT_GLOSS) {
+        lf lobe = shine_lobe(s->n, l, s->v, s->exponent);
+        s->glossy = lv3_along(s->glossy, light, lobe);
+    }
+}
+
+/* Adds the samples' reflected light to `direct`. */
+static inline void lit_store(global const vit_scene *scene, const lit_sample *s, uint first, global const uint *albedo, global const uint *gloss, global float *direct)
+{
+    uint n = scene->samples;
+    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), out = lv3_load_planes(direct, n, first);
+    out = lv3_set(fma(a.x, s->matt.x, out.x), fma(a.y, s->matt.y, out.y), fma(a.z, s->matt.z, out.z));
+    if (VIT_EFFECT_GLOSS) {
+        lv3 g = l_decode_albedo(L_LOAD(gloss + first));
+        out = lv3_set(fma(g.x, s->glossy.x, out.x), fma(g.y, s->glossy.y, out.y), fma(g.z, s->glossy.z, out.z));
+    }
+    lv3_store_planes(out, direct, n, first);
+}
+
+#define LIT_PARAMETERS                                                                                                           \
+    global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,         \
+        global const float *rays, global const uint *gloss, global float *direct
+
+#if VIT_WITH(LIGHTS)
+kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights, LIT_PARAMETERS WORK_PARAMETERS)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->samples)
         return;
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
-    lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first));
-    lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
+    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* of distances, relative to the scene's size */
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
-        lv3 to = lv3_sub(lv3_load(light->position), p);
-        lf d2 = l_max(lv3_dot(to, to), L_F(least2)), d = l_sqrt(d2);
-        lv3 l = lv3_scale(to, l_div(1.0f, d));
-        lf e = l_max(lv3_dot(s, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+        lv3 l;
+        lf e, d;
+        if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) {
+            l = lv3_scale(lv3_load(light->direction), L_F(-1));
+            d = L_F(3e38f);
+            e = l_max(lv3_dot(s.n, l), L_F(0));
+        } else {
+            lv3 to = lv3_sub(lv3_load(light->position), s.p);
+            lf d2 = l_max(lv3_dot(to, to), L_F(least2));
+            d = l_sqrt(d2);
+            l = lv3_scale(to, l_div(1.0f, d));
+            e = l_max(lv3_dot(s.n, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+        }
         li lit = hit & L_GT(e, L_F(0));
         if (!l_any(lit))
             continue;
-        ray_packet r = ray_make(p, l);
+        ray_packet r = ray_make(s.p, l);
         WORK_LANES(shadow_rays, lit);
         lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
         WORK_TRACED(r);
-        sum = lv3_along(sum, lv3_load(light->intensity), l_sel(lit, e, L_F(0)));
+        lit_add(&s, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
     }
-    lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI));
-    lv3 out = lv3_load_planes(direct, n, first);
-    lv3_store_planes(lv3_set(fma(a.x, sum.x, out.x), fma(a.y, sum.y, out.y), fma(a.z, sum.z, out.z)), direct, n, first);
+    lit_store(scene, &s, first, albedo, gloss, direct);
+    WORK_END
+}
+#endif
+
+/* Light of the points `set` of the fixed sets: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and each copy another again. */
+static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global const vit_emitter *emitters, uint points, int sky, uint first, uint copy WORK_PASSED)
+{
+    global const float *p = (global const float *)emitters;
+    const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
+    li at = (((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1)) * (int)points * stride;
+    for (uint i = 0; i < points; i++, at += stride) {
+        lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
+        lf d = L_F(3e38f), e;
+        if (sky)
+            e = l_max(lv3_dot(s->n, l), L_F(0));
+        else {
+            /* The part of the surface that the point stands for, as a disc on the way: never more than half a sphere of it. */
+            lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
+            to = lv3_sub(to, s->p);
+            lf d2 = l_max(lv3_dot(to, to), L_F(1e-30f));
+            d = l_sqrt(d2);
+            l = lv3_scale(to, l_div(1.0f, d));
+            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), d2 + L_GATHER(lf, p + 3, at));
+            d *= 0.9999f; /* not the light itself */
+        }
+        li lit = s->hit & L_GT(e, L_F(0));
+        if (!l_any(lit))
+            continue;
+        ray_packet r = ray_make(s->p, l);
+        WORK_LANES(shadow_rays, lit);
+        lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
+        WORK_TRACED(r);
+        lv3 power = lv3_set(L_GATHER(lf, p + 8, at), L_GATHER(lf, p + 9, at), L_GATHER(lf, p + 10, at));
+        lit_add(s, l, l_sel(lit, e, L_F(0)), power);
+    }
+}
+
+#if VIT_WITH(AREA_LIGHTS)
+kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, LIT_PARAMETERS WORK_PARAMETERS)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->samples)
+        return;
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+    if (!l_any(hit))
+        return;
+    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    WORK_BEGIN
+    lit_by_emitters(RAY_SCENE, &s, emitters, scene->area_samples, 0, first, round / layers WORK_PASS);
+    lit_store(scene, &s, first, albedo, gloss, direct);
+    WORK_END
+}
+#endif
+
+#if VIT_WITH(SKY_LIGHT)
+kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, LIT_PARAMETERS WORK_PARAMETERS)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->samples)
+        return;
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+    if (!l_any(hit))
+        return;
+    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    WORK_BEGIN
+    lit_by_emitters(RAY_SCENE, &s, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, round / layers WORK_PASS);
+    lit_store(scene, &s, first, albedo, gloss, direct);
     WORK_END
 }
 #endif

@@ -6,7 +6,7 @@
 
 /* Emission: path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square of directions: exactly
  * uniform, stratified, and neighbouring lanes start alike. weight: the light's intensity in that direction over that on its axis. */
-static inline lv3 photon_emission(global const vit_light *light, lu path, lf *weight)
+static inline lv3 photon_emission(global const vit_light *light, lu path, lv3 *origin, lf *weight)
 {
     uint count = light->path_count;
     lu i = path - light->path_first; /* < 2^20, so that i * 2^32 / count can be had in two exact steps */
@@ -15,6 +15,16 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lf *we
     lu curve = (high << 20) + (((rest << 10) / count) << 10) + mul_hi(r, L_U(0xffffffffu / count));
     lf u = (L_FROM_INT(L_AS_INT(l_even_bits(curve))) + l_unit_float(l_pcg(r))) * (1.0f / 65536.0f);
     lf v = (L_FROM_INT(L_AS_INT(l_even_bits(curve >> 1))) + l_unit_float(l_pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
+    *origin = lv3_load(light->position);
+    *weight = L_F(1);
+    if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) { /* parallel, from a point of the disc */
+        lf r = l_sqrt(u) * light->spot_scale, sr, cr;
+        lv3 along = lv3_load(light->direction);
+        l_sincos_turn(v, &sr, &cr);
+        ray_packet disc = ray_make(along, along);
+        *origin = lv3_along(lv3_along(*origin, disc.ax, r * cr), disc.ay, r * sr);
+        return along;
+    }
     /* Uniform over the cone cos >= cos_outer, about the axis. */
     lf c = fma(u, L_F(light->cos_outer - 1.0f), L_F(1)), s = l_sqrt(l_max(1.0f - c * c, L_F(0))), sp, cp;
     l_sincos_turn(v, &sp, &cp);
@@ -108,9 +118,11 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o;
     if (light < lights + (size_t)(frame + 1) * scene->lights) {
         lf weight;
-        o = lv3_load(light->position);
-        d = photon_emission(light, path, &weight);
-        lf share = weight * vit_div(2.0f * VIT_PI * (1.0f - light->cos_outer), (float)light->path_count);
+        d = photon_emission(light, path, &o, &weight);
+        float whole = 2.0f * VIT_PI * (1.0f - light->cos_outer); /* sr; directional: m2 of the disc */
+        if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL)
+            whole = VIT_PI * light->spot_scale * light->spot_scale;
+        lf share = weight * vit_div(whole, (float)light->path_count);
         power = lv3_scale(lv3_load(light->intensity), share);
         alive = L_LT(path, L_U(light->path_first + light->path_count)) & L_GT(share, L_F(0));
     }
@@ -119,8 +131,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
         lf t = L_F(3e38f);
         li triangle = L_I(0);
-        surface s;
-        s.position = o;
+        surface s = surface_none(o);
         if (l_any(alive)) {
             ray_packet r = ray_make(o, d);
             WORK_LANES(photon_rays, alive);
@@ -132,25 +143,51 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             WORK_LANES(surface_points, alive);
             WORK_LANES(texture_fetches, s.textured);
         }
+        /* Mirrors and glass store nothing; without caustics they end paths. */
+        li matt = alive;
+        if ((VIT_EFFECT_MIRROR || VIT_EFFECT_GLASS) && l_any(alive)) {
+            matt &= L_EQ(s.shine.kind, L_I((int)VIT_MATTE));
+            if (!VIT_EFFECT_CAUSTICS)
+                alive = matt;
+        }
         if (hit_number > 0) {
             lu zone = L_U(0);
             if (VIT_EFFECT_ZONES && l_any(alive)) {
                 cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
                 zone = cell_zone(cells, &cell);
             }
-            photon_store(photons, (hit_number - 1) * paths + first, alive, s.position, d, power, scene->radius, zone);
-            stored += popcount(l_bits(alive));
+            photon_store(photons, (hit_number - 1) * paths + first, matt, s.position, d, power, scene->radius, zone);
+            stored += popcount(l_bits(matt));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
             continue; /* slots of dead paths are still written, as empty */
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
             power = lv3_scale(power, light_falloff(light, t * t) * (t * t));
-        power = lv3_set(power.x * s.albedo.x, power.y * s.albedo.y, power.z * s.albedo.z);
-        alive &= L_GT(power.x + power.y + power.z, L_F(0));
+        lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
         lf u, v;
         photon_numbers(path, hit_number, &u, &v);
-        d = photon_bounce(s.face, u, v);
+        next = photon_bounce(s.face, u, v);
         o = s.position;
+        if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) {
+            lv3 from = o, on = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular;
+            li glass = alive & ~matt & L_NE(s.shine.kind, L_I((int)VIT_MIRROR));
+            if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
+                li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
+                shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
+                li through = glass & L_GE(u, p.mirror);
+                lv3 lost = lv3_set(shine_absorbed(s.shine.absorption.x, t), shine_absorbed(s.shine.absorption.y, t), shine_absorbed(s.shine.absorption.z, t));
+                power = lv3_sel(inside, lv3_set(power.x * lost.x, power.y * lost.y, power.z * lost.z), power);
+                on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
+                from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
+                tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
+            }
+            next = lv3_sel(matt, next, on);
+            o = lv3_sel(matt, o, from);
+            reflectance = lv3_sel(matt, reflectance, tint);
+        }
+        power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z);
+        alive &= L_GT(power.x + power.y + power.z, L_F(0));
+        d = next;
     }
     atomic_add(counters + VIT_COUNTER_photons, stored);
     WORK_END

@@ -2,19 +2,6 @@
  * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine.h). */
 
 enum { FORMAT_XRGB8888, FORMAT_RGB565, FORMAT_RGBA32F };
-/* 1 << VIT_VIEW. */
-enum {
-    VIEW_FINAL = 1,
-    VIEW_DIRECT = 2,
-    VIEW_INDIRECT = 4,
-    VIEW_CLUSTERS = 8,
-    VIEW_PHOTONS = 16,
-    VIEW_HEAT = 32,
-    VIEW_NORMALS = 64,
-    VIEW_DEPTH = 128,
-    VIEW_ALBEDO = 256
-};
-
 /* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */
 static inline lf srgb_curve(lf x)
 {
@@ -121,7 +108,8 @@ static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside
 kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
                     global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
                     uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
-                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global uchar *framebuffer)
+                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global const uint *gloss,
+                    global const float *rays, global const float *film, global const uint *edges, global uchar *framebuffer)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -135,12 +123,14 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0)), c = zero;
     int view = 1 << VIT_VIEW, display = 0; /* is c a display value already? */
-    if (view & (VIEW_FINAL | VIEW_DIRECT | VIEW_PHOTONS))
-        c = lv3_load_planes(direct, n, first);
-    if (VIT_EFFECT_PHOTONS && (view & (VIEW_FINAL | VIEW_INDIRECT | VIEW_PHOTONS))) {
-        lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), e = lv3_load_planes(indirect, n, first);
-        c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
-    }
+    if (VIT_EFFECT_FILM) {
+        c = lv3_load_planes(film, n, first);
+        if (VIT_EFFECT_ANTIALIAS) {
+            li all = -((L_I((int)(edges[first >> 4] >> (first & 15u))) >> L_INDEX) & 1);
+            c = lv3_scale(c, l_sel(all, L_F(vit_div(1.0f, (float)scene->copies)), L_F(1)));
+        }
+    } else
+        c = sample_radiance(n, first, albedo, direct, indirect, gloss, rays);
     if (VIT_EFFECT_PHOTONS && (view & (VIEW_CLUSTERS | VIEW_HEAT))) {
         lu key = L_LOAD(keys + first);
         c = view == VIEW_HEAT ? cluster_heat(scene, key, max_nodes, masks, prefix, list_count)
@@ -224,13 +214,21 @@ static inline void note_fault(global uint *faults, uint frame, uint code, uint c
     faults[0] = noted + 1 != 0 ? noted + 1 : VIT_FAULT_RING * 2;
 }
 
-/* Last: adds the frame's counters to those since vit_open (sums for what was dropped, maxima for the rest), and notes faults. */
-kernel void account(global uint *counters, uint frame, global uint *faults)
+static inline uint account_sum(uint counter, uint a, uint b)
+{
+    if (counter == VIT_COUNTER_slice_min)
+        return min(a, b);
+    return counter == VIT_COUNTER_dropped_samples || counter == VIT_COUNTER_dropped_entries ? add_sat(a, b) : max(a, b);
+}
+
+/* Last: adds the round's counters, which come first, to the frame's, which come third, and to those since vit_open, between them: sums
+ * for what was dropped, extremes for the rest. Notes faults. */
+kernel void account(global uint *counters, uint frame, uint round, global uint *faults)
 {
     for (uint i = (uint)get_local_id(0); i < VIT_COUNTER_COUNT; i += (uint)get_local_size(0)) {
-        uint total = counters[VIT_COUNTER_COUNT + i];
-        counters[VIT_COUNTER_COUNT + i] =
-            i == VIT_COUNTER_dropped_samples || i == VIT_COUNTER_dropped_entries ? add_sat(total, counters[i]) : max(total, counters[i]);
+        global uint *total = counters + VIT_COUNTER_COUNT + i, *whole = counters + 2 * VIT_COUNTER_COUNT + i;
+        *total = i == VIT_COUNTER_slice_min ? max(*total, counters[i]) : account_sum(i, *total, counters[i]);
+        *whole = round == 0 ? counters[i] : account_sum(i, *whole, counters[i]);
     }
     if (get_local_id(0) == 0) {
         note_fault(faults, frame, VIT_FAULT_samples_dropped, counters[VIT_COUNTER_dropped_samples]);

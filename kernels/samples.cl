@@ -1,30 +1,78 @@
-/* Pass 2: view samples, what each pixel's ray found. */
-kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
-                    global const float *hit_distance, global const uint *sides, global const uint *cells, global float *position, global uint *normal, global uint *albedo,
-                    global float *direct, global uint *accept, global float *inverse_area WORK_PARAMETERS)
+/* Pass 2: view samples, what each pixel's ray found, or with mirrors and glass what it found in the end. */
+
+/* Radiance of the sky in direction d, W/(m2 sr). */
+static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_sky_texel *sky, lv3 d)
+{
+    if (!VIT_EFFECT_SKY_IMAGE)
+        return lv3_load(scene->background);
+    /* The octahedral square, -1..1, to texels; the gutter holds what lies beyond its edges. */
+    lf x, y, size = L_F((float)scene->sky_size);
+    l_octahedral(d, &x, &y);
+    lf u = fma(fma(x, L_F(0.5f), L_F(0.5f)), size, L_F(-0.5f)), v = fma(fma(y, L_F(0.5f), L_F(0.5f)), size, L_F(-0.5f));
+    u = l_min(l_max(u, L_F(-1)), size - 0.5f);
+    v = l_min(l_max(v, L_F(-1)), size - 0.5f);
+    lf fu = floor(u), fv = floor(v);
+    int pitch = (int)scene->sky_size + 2;
+    li at = ((L_TRUNC(fv) + 1) * pitch + L_TRUNC(fu) + 1) * 4;
+    u -= fu;
+    v -= fv;
+    global const float *texels = (global const float *)sky;
+    lf c[3];
+    for (int k = 0; k < 3; k++) {
+        lf c00 = L_GATHER(lf, texels + k, at), c10 = L_GATHER(lf, texels + k, at + 4);
+        lf c01 = L_GATHER(lf, texels + k, at + pitch * 4), c11 = L_GATHER(lf, texels + k, at + pitch * 4 + 4);
+        lf top = fma(c10 - c00, u, c00), bottom = fma(c11 - c01, u, c01);
+        c[k] = l_max(fma(bottom - top, v, top), L_F(0));
+    }
+    return lv3_set(c[0], c[1], c[2]);
+}
+
+kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
+                    global const float *rays, global const vit_sky_texel *sky, global const uint *sides, global const uint *cells,
+                    global float *position, global uint *normal, global uint *albedo, global float *direct, global uint *accept,
+                    global float *inverse_area, global uint *gloss WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
+    if (first >= n || round_skips(first, active))
         return;
     global const vit_camera *camera = cameras + frame;
     li x, y;
     l_pixel(scene, first, &x, &y);
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
     li hit = L_NE(triangle, L_I((int)VIT_NONE));
-    lv3 light = lv3_load(scene->background);
+    lv3 light = lv3_load(scene->background), eye = lv3_load(camera->eye), d = eye;
+    lf t = l_sel(hit, L_LOAD(hit_distance + first), L_F(1)), whole = t;
+    if (VIT_EFFECT_CHAINS) {
+        eye = chain_origin(rays, n, first);
+        d = chain_direction(rays, n, first);
+        whole = l_sel(hit, chain_length(rays, n, first), L_F(1));
+    } else if (VIT_EFFECT_SKY_IMAGE || l_any(hit))
+        d = l_camera_ray(scene, camera, round / layers, x, y);
+    if (VIT_EFFECT_SKY_IMAGE && l_any(~hit))
+        light = sky_radiance(scene, sky, d);
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
     if (l_any(hit)) {
-        lv3 eye = lv3_load(camera->eye), d = l_camera_ray(camera, x, y);
-        lf t = l_sel(hit, L_LOAD(hit_distance + first), L_F(1));
         float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
-        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, L_F(vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx)))));
+        lf cone = L_F(vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
+        if (VIT_EFFECT_CHAINS) /* the footprint goes on widening behind a mirror as if it were flat */
+            cone *= l_div(whole, l_max(t, L_F(1e-30f)));
+        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
         L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(0)), albedo + first);
-        light = lv3_sel(hit, s.emission, light);
+        if (VIT_EFFECT_GLOSS) {
+            L_STORE(l_sel_u(hit, l_encode_albedo(s.shine.specular), L_U(0)), gloss + first);
+            L_STORE(l_sel_u(hit, L_AS_UINT(s.shine.exponent), L_U(0)), gloss + n + first);
+        }
+        lv3 own = s.emission;
+        if (VIT_EFFECT_AMBIENT) {
+            lv3 all = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo;
+            own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y), fma(all.z, L_F(scene->ambient[2]), own.z));
+        }
+        light = lv3_sel(hit, own, light);
         if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) {
             cell_place cell = cell_at(sides, hit, triangle, s.back, s.b1, s.b2);
             if (VIT_EFFECT_ZONES)
@@ -37,12 +85,16 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
         sample_store_position(scene, zero, zero, L_I(0), position, first);
         L_STORE(L_U(0), normal + first);
         L_STORE(L_U(0), albedo + first);
+        if (VIT_EFFECT_GLOSS) {
+            L_STORE(L_U(0), gloss + first);
+            L_STORE(L_U(0), gloss + n + first);
+        }
         if (VIT_EFFECT_ZONES)
             L_STORE(L_U(0), accept + first);
         if (VIT_EFFECT_AREA)
             L_STORE(L_F(0), inverse_area + first);
     }
-    /* Radiance that needs no light source: emission and background. Direct light is added to it. */
+    /* Radiance that needs no light source: emission, ambient light and background. Direct light is added to it. */
     lv3_store_planes(light, direct, n, first);
     WORK_END
 }

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Every field of a record is a word: records.clh. */
+/* Every field of a record but vit_scene.effects is a word: records.clh. */
 #define X(code, type, records) _Static_assert(sizeof(type) % VIT_WORD == 0, #type " must be whole words");
 VIT_SECTIONS(X)
 #undef X
@@ -27,6 +27,10 @@ void *vit_swap_words(void *to, const void *from, size_t bytes, size_t word) {
     else
         SWAP_LOOP(uint64_t, __builtin_bswap64)
     return to;
+}
+
+void vit_swap_scene(vit_scene *s) {
+    s->effects = s->effects << 32 | s->effects >> 32;
 }
 
 #define SWAP_FIELD(name) ((void)vit_swap_words(&to->name, &from->name, sizeof to->name, sizeof to->name))

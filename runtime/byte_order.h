@@ -16,6 +16,9 @@ void *vit_swap_words(void *to, const void *from, size_t bytes, size_t word);
 const vit_pack_header *vit_swap_header(vit_pack_header *to, const vit_pack_header *from);
 const vit_pack_entry *vit_swap_entry(vit_pack_entry *to, const vit_pack_entry *from);
 
+/* vit_swap_words() by words leaves the halves of the one field of two words in the file's order: this swaps them. */
+void vit_swap_scene(vit_scene *s);
+
 /* Record `i` of a section as it lies in the file, in the machine's order: the record itself, or a copy that lives as long as
  * the block. */
 #define VIT_RECORD(type, records, i)                                                                                           \

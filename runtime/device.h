@@ -6,7 +6,12 @@
 #include "passes.h"
 #include "pack_read.h"
 
-#define VIT_MAX_ENQUEUES 160 /* rows of the table times levels, at most */
+#define VIT_MAX_ENQUEUES 2048 /* rows of the table times levels times rounds, at most */
+
+/* One run of a pass. */
+typedef struct vit_step {
+    uint32_t pass, level, frame, round;
+} vit_step;
 
 /* What a device is opened with. All but the info lives as long as the device. */
 typedef struct vit_device_setup {
@@ -25,8 +30,8 @@ typedef struct vit_device {
     /* After an error close() is still to be called. All buffers begin as zeros or with the pack's data. */
     vit_status (*open)(const vit_device_setup *setup, vit_text *why);
     void (*close)(void *state);
-    /* Puts one pass at one level of one frame behind those before it. */
-    vit_status (*run)(void *state, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why);
+    /* Puts one run of a pass behind those before it. */
+    vit_status (*run)(void *state, const vit_step *step, vit_text *why);
     vit_status (*clear)(void *state, vit_buffer b, vit_text *why);
     /* Waits, then copies the beginning of a buffer. */
     vit_status (*read)(void *state, vit_buffer b, size_t bytes, void *out, vit_text *why);

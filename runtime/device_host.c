@@ -95,6 +95,7 @@ static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
     d->call = (host_call){.run = l->run,
                           .max_nodes = l->max_nodes,
                           .max_list = l->max_list,
+                          .layers = l->layers,
                           .effects = l->effects,
                           .view = l->view,
                           .format = l->format};
@@ -125,20 +126,21 @@ static double now_ms(void) {
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-static vit_status run(void *state, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
+static vit_status run(void *state, const vit_step *step, vit_text *why) {
     host_device *d = state;
-    const vit_pass *p = &vit_passes[pass];
+    const vit_pass *p = &vit_passes[step->pass];
     double began = d->profile ? now_ms() : 0;
     size_t local, items;
     (void)why;
-    vit_pass_size(p, d->scene, d->limits, level, &local, &items);
-    d->call.pass = pass;
-    d->call.level = level;
-    d->call.frame = frame;
-    d->call.chunks = vit_pass_chunks(p, d->limits, level);
+    vit_pass_size(p, d->scene, d->limits, step->level, &local, &items);
+    d->call.pass = step->pass;
+    d->call.level = step->level;
+    d->call.frame = step->frame;
+    d->call.round = step->round;
+    d->call.chunks = vit_pass_chunks(p, d->limits, step->level);
     vit_host_pool_run(&d->pool, run_items, d, items);
     if (d->profile)
-        d->pass_ms[pass] += now_ms() - began;
+        d->pass_ms[step->pass] += now_ms() - began;
     return VIT_OK;
 }
 

@@ -109,18 +109,18 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
 static int build_options(char *text, size_t size, const vit_limits *l, int wide_divide) {
     int n = snprintf(text, size,
                      "-cl-std=CL1.2 %s -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
-                     "-DVIT_EFFECT_DOTS=%d -DVIT_COUNT_WORK=%d",
+                     "-DVIT_EFFECT_DOTS=%d -DVIT_EFFECT_FILM=%d -DVIT_EFFECT_CHAINS=%d -DVIT_COUNT_WORK=%d",
                      wide_divide ? "-DVIT_WIDE_DIVIDE" : "-cl-fp32-correctly-rounded-divide-sqrt", l->lanes, (int)l->view,
-                     (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_WORK) != 0);
+                     (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_FILM) != 0, (l->effects & ON_CHAINS) != 0, (l->effects & ON_WORK) != 0);
 #define X(bit, name, macro, why)                                                                                               \
-    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (l->effects >> bit) & 1);
+    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (int)(l->effects >> bit & 1));
     VIT_EFFECTS(X)
 #undef X
     return n < (int)size;
 }
 
 static vit_status build(vit_opencl *d, const vit_limits *l, vit_text *why) {
-    char options[2048];
+    char options[4096];
     cl_int e;
     if (!build_options(options, sizeof options, l, d->wide_divide))
         return failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);
@@ -186,7 +186,7 @@ static vit_status upload_baked_photons(vit_opencl *d, const vit_pack *pack, vit_
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueWriteBuffer", e);
 }
 
-/* Arguments that never change; frame and level are set when a pass is enqueued. */
+/* Arguments that never change; frame, round and level are set when a pass is enqueued. */
 static vit_status set_arguments(vit_opencl *d, vit_text *why) {
     const vit_limits *l = d->limits;
     for (uint32_t p = 0; p < vit_pass_count; p++) {
@@ -196,7 +196,7 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
             uint32_t a = vit_passes[p].args[i];
             if (a == B_work && !vit_buffer_called(a, l))
                 break;
-            uint32_t value = a == V_run ? l->run : a == V_max_nodes ? l->max_nodes : a == V_max_list ? l->max_list : 0;
+            uint32_t value = a == V_run ? l->run : a == V_layers ? l->layers : a == V_max_nodes ? l->max_nodes : a == V_max_list ? l->max_list : 0;
             value = a == V_pass ? p : value;
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
@@ -283,12 +283,16 @@ static void close_device(void *state) {
     memset(d, 0, sizeof *d);
 }
 
-static vit_status set_varying(vit_opencl *d, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
+static vit_status set_varying(vit_opencl *d, const vit_step *step, vit_text *why) {
+    const uint32_t pass = step->pass;
     for (uint32_t i = 0; vit_passes[pass].args[i] != V_END; i++) {
         uint32_t a = vit_passes[pass].args[i];
-        if (a != V_frame && a != V_level && a != V_chunks)
+        if (a != V_frame && a != V_level && a != V_chunks && a != V_round)
             continue;
-        uint32_t value = a == V_frame ? frame : a == V_level ? level : vit_pass_chunks(&vit_passes[pass], d->limits, level);
+        uint32_t value = a == V_frame   ? step->frame
+                         : a == V_round ? step->round
+                         : a == V_level ? step->level
+                                        : vit_pass_chunks(&vit_passes[pass], d->limits, step->level);
         cl_int e = clSetKernelArg(d->kernels[pass], i, sizeof value, &value);
         if (e != CL_SUCCESS)
             return failed(why, vit_passes[pass].name, e);
@@ -296,12 +300,13 @@ static vit_status set_varying(vit_opencl *d, uint32_t pass, uint32_t level, uint
     return VIT_OK;
 }
 
-static vit_status run(void *state, uint32_t pass, uint32_t level, uint32_t frame, vit_text *why) {
+static vit_status run(void *state, const vit_step *step, vit_text *why) {
     vit_opencl *d = state;
+    const uint32_t pass = step->pass;
     size_t local, global;
     cl_event *event = NULL;
-    vit_pass_size(&vit_passes[pass], d->scene, d->limits, level, &local, &global);
-    vit_status status = set_varying(d, pass, level, frame, why);
+    vit_pass_size(&vit_passes[pass], d->scene, d->limits, step->level, &local, &global);
+    vit_status status = set_varying(d, step, why);
     if (status != VIT_OK || global == 0)
         return status;
     if (d->profile && d->enqueued < VIT_MAX_ENQUEUES) {

@@ -4,13 +4,20 @@
 #include <stdio.h>
 
 /* What a walk over the frame does after each pass; NULL: nothing. */
-typedef vit_status after_fn(vit *v, uint32_t pass, uint32_t level, void *user, vit_text *why);
+typedef vit_status after_fn(vit *v, const vit_step *step, void *user, vit_text *why);
+
+static vit_status run_step(vit *v, const vit_step *step, after_fn *after, void *user, vit_text *why) {
+    vit_status status = v->device->run(v->state, step, why);
+    if (status != VIT_OK)
+        vit_note_fault(v, step->pass, step->frame);
+    if (status == VIT_OK && after)
+        status = after(v, step, user, why);
+    return status;
+}
 
 /* Rows in order; a run of rows that repeat is walked once a level. */
-static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
+static vit_status walk_round(vit *v, uint32_t frame, uint32_t round, after_fn *after, void *user, vit_text *why) {
     const vit_scene *s = v->pack.scene;
-    if ((v->limits.effects & ON_WORK) && v->device->clear(v->state, B_work, why) != VIT_OK) /* counted from nothing each frame */
-        return VIT_FAILED;
     for (uint32_t p = 0, end; p < vit_pass_count; p = end) {
         end = p + 1;
         while (vit_passes[p].repeat != ONCE && vit_passes[p].repeat != UPWARD && end < vit_pass_count &&
@@ -20,19 +27,26 @@ static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_
         for (uint32_t i = 0; i < levels; i++) {
             uint32_t level = vit_passes[p].repeat == UPWARD ? levels - 1 - i : i;
             for (uint32_t row = p; row < end; row++) {
-                if (!vit_pass_called(row, &v->limits) || !vit_pass_at_level(&vit_passes[row], s, &v->limits, level))
+                const vit_pass *pass = &vit_passes[row];
+                if (!vit_pass_called(row, &v->limits) || !vit_pass_at_level(pass, s, &v->limits, level) ||
+                    !vit_pass_in_round(pass, &v->limits, round))
                     continue;
-                vit_status status = v->device->run(v->state, row, level, frame, why);
-                if (status != VIT_OK)
-                    vit_note_fault(v, row, frame);
-                if (status == VIT_OK && after)
-                    status = after(v, row, level, user, why);
+                vit_status status = run_step(v, &(vit_step){row, level, frame, round}, after, user, why);
                 if (status != VIT_OK)
                     return status;
             }
         }
     }
     return VIT_OK;
+}
+
+static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
+    vit_status status = VIT_OK;
+    if (v->limits.effects & ON_WORK) /* counted from nothing each frame */
+        status = v->device->clear(v->state, B_work, why);
+    for (uint32_t round = 0; round < v->limits.rounds && status == VIT_OK; round++)
+        status = walk_round(v, frame, round, after, user, why);
+    return status;
 }
 
 static vit_status check_index(const vit *v, uint32_t index, vit_text *why) {
@@ -66,11 +80,12 @@ typedef struct trace {
     void *user;
 } trace;
 
-static vit_status trace_pass(vit *v, uint32_t pass, uint32_t level, void *user, vit_text *why) {
+static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text *why) {
     trace *t = user;
+    const vit_pass *pass = &vit_passes[step->pass];
     for (uint32_t b = 0; b < B_COUNT; b++) {
         uint64_t bytes = vit_buffer_bytes(b, v->pack.scene, &v->limits);
-        if (!(vit_passes[pass].writes >> b & 1) || bytes == 0)
+        if (!(pass->writes >> b & 1) || bytes == 0)
             continue;
         if (bytes > t->size) {
             snprintf(why->text, sizeof why->text, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b], (unsigned long long)bytes);
@@ -78,11 +93,12 @@ static vit_status trace_pass(vit *v, uint32_t pass, uint32_t level, void *user, 
         }
         if (v->device->read(v->state, (vit_buffer)b, (size_t)bytes, t->scratch, why) != VIT_OK)
             return VIT_FAILED;
-        char name[96];
-        if (vit_passes[pass].repeat == ONCE)
-            snprintf(name, sizeof name, "%s.%s", vit_passes[pass].name, vit_buffer_names[b]);
-        else
-            snprintf(name, sizeof name, "%s[%u].%s", vit_passes[pass].name, level, vit_buffer_names[b]);
+        char name[96], round[16] = "", level[16] = "";
+        if (v->limits.rounds > 1)
+            snprintf(round, sizeof round, "{%u}", step->round);
+        if (pass->repeat != ONCE)
+            snprintf(level, sizeof level, "[%u]", step->level);
+        snprintf(name, sizeof name, "%s%s%s.%s", pass->name, round, level, vit_buffer_names[b]);
         t->pass(t->user, name, vit_hash_words(t->scratch, (size_t)bytes, vit_buffer_word(b, &v->limits)));
     }
     return VIT_OK;

@@ -38,6 +38,14 @@ static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_WORK;
     if ((s->effects & ON(PHOTONS)) && !(s->effects & ON(SPARSE)))
         l.effects |= ON_DENSE;
+    if (s->effects & (ON(MIRROR) | ON(GLASS)))
+        l.effects |= ON_CHAINS;
+    /* Views of the method's insides show the first sample of a pixel. */
+    const int light = info->view == VIT_VIEW_final || info->view == VIT_VIEW_direct || info->view == VIT_VIEW_indirect || info->view == VIT_VIEW_photons;
+    if (light && (s->effects & (ON(ANTIALIAS) | ON(GLASS))))
+        l.effects |= ON_FILM;
+    l.layers = l.effects & ON_FILM && s->effects & ON(GLASS) ? 2 : 1;
+    l.rounds = l.effects & ON_FILM ? l.layers * s->copies : 1;
     return l;
 }
 
@@ -61,6 +69,7 @@ static void swap_sections(vit_pack *pack, char *to) {
             pack->section[i] = vit_swap_words(to, pack->section[i], pack->bytes[i], VIT_WORD);
         to += round_up(pack->bytes[i]);
     }
+    vit_swap_scene((vit_scene *)(uintptr_t)pack->section[VIT_SECTION_META]);
     pack->scene = pack->section[VIT_SECTION_META];
 }
 

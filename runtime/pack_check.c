@@ -25,18 +25,20 @@ static bool photons_are_finite(const vit_scene *s, const vit_light *l) {
         most = l->intensity[k] > most ? l->intensity[k] : most;
     if (l->falloff == VIT_FALLOFF_WINDOW)
         most /= l->inv_range2;
+    if (l->kind == VIT_LIGHT_DIRECTIONAL)
+        most *= (double)l->spot_scale * l->spot_scale;
     return most * 8.0 / l->path_count / ((double)s->radius * s->radius) <= VIT_MAX_PHOTON;
 }
 
 static const char *light_fault(const vit_scene *s, const vit_light *l) {
     const bool spot = l->kind == VIT_LIGHT_SPOT;
-    if (!spot && l->kind != VIT_LIGHT_POINT)
+    if (l->kind > VIT_LIGHT_DIRECTIONAL)
         return "unknown kind";
     if (l->falloff != VIT_FALLOFF_INVERSE_SQUARE && l->falloff != VIT_FALLOFF_WINDOW)
         return "unknown falloff";
     if (!all_finite(l->position, 3) || !all_finite(l->direction, 3))
         return "position or direction is not finite";
-    if (spot && !is_unit(l->direction))
+    if (l->kind != VIT_LIGHT_POINT && !is_unit(l->direction))
         return "direction is not a unit vector";
     if (!in_range(l->cos_outer, -1.0f, 1.0f))
         return "cos_outer must be in -1..1";
@@ -46,9 +48,13 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "intensity must be in 0..1e15";
     if (!in_range(l->inv_range2, 0.0f, FLT_MAX))
         return "inv_range2 must be finite and >= 0";
-    if (spot && !(s->effects & VIT_EFFECT_BIT_SPOT))
+    if (spot && !(s->effects & VIT_BIT(SPOT)))
         return "a spot light without the effect SPOT";
-    if (l->inv_range2 > 0.0f && !(s->effects & VIT_EFFECT_BIT_RANGE))
+    if (l->kind == VIT_LIGHT_DIRECTIONAL && !(s->effects & VIT_BIT(DIRECTIONAL)))
+        return "a directional light without the effect DIRECTIONAL";
+    if (l->kind == VIT_LIGHT_DIRECTIONAL && (!(l->spot_scale > 0.0f) || l->inv_range2 > 0.0f))
+        return "a directional light with a range, or without the radius of its photons' disc";
+    if (l->inv_range2 > 0.0f && !(s->effects & VIT_BIT(RANGE)))
         return "a range without the effect RANGE";
     if (l->falloff == VIT_FALLOFF_WINDOW && !(l->inv_range2 > 0.0f))
         return "falloff WINDOW without a range";
@@ -100,7 +106,7 @@ vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attri
         const vit_u32 material = a->material & VIT_MATERIAL_INDEX;
         if (material >= s->materials)
             return pack_refuse(why, "section ATTR: triangle %u: material %u of %u", i, material, s->materials);
-        if (a->material & ~(VIT_MATERIAL_INDEX | VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK))
+        if (a->material & ~(VIT_MATERIAL_INDEX | VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK | VIT_TRIANGLE_SMOOTH))
             return pack_refuse(why, "section ATTR: triangle %u: unknown flags 0x%x", i, a->material);
         if (!all_finite(a->uv[0], 2) || !all_finite(a->uv[1], 2) || !all_finite(a->uv[2], 2))
             return pack_refuse(why, "section ATTR: triangle %u: a texture coordinate is not finite", i);
@@ -108,6 +114,22 @@ vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attri
             return pack_refuse(why, "section ATTR: triangle %u: padding is not 0", i);
     }
     return VIT_OK;
+}
+
+static const char *shine_fault(const vit_material *m) {
+    if (m->kind > VIT_THIN_GLASS)
+        return "unknown kind";
+    if (!all_in_range(m->specular, 3, 0.0f, 1.0f))
+        return "specular must be in 0..1";
+    if (!in_range(m->exponent, 1.0f, VIT_MAX_EXPONENT))
+        return "exponent must be in 1..1e4";
+    if (!in_range(m->ior, VIT_MIN_IOR, VIT_MAX_IOR))
+        return "ior must be in 1..10";
+    if (!all_in_range(m->absorption, 3, 0.0f, FLT_MAX))
+        return "absorption must be finite and >= 0";
+    if (m->lights > 1)
+        return "lights must be 0 or 1";
+    return all_zero(m->pad, 2) ? 0 : "padding is not 0";
 }
 
 vit_status pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
@@ -123,6 +145,9 @@ vit_status pack_check_materials(const vit_scene *s, const vit_material *material
             return pack_refuse(why, "section MATL: material %u: cutout must be 0 or 1, got %u", i, m->cutout);
         if (m->cutout && m->texture == VIT_NONE)
             return pack_refuse(why, "section MATL: material %u: cut out by no texture", i);
+        const char *fault = shine_fault(m);
+        if (fault)
+            return pack_refuse(why, "section MATL: material %u: %s", i, fault);
     }
     return VIT_OK;
 }
@@ -172,14 +197,37 @@ vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_
     return VIT_OK;
 }
 
+vit_status pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why) {
+    const uint64_t area = VIT_PATTERNS * (uint64_t)s->area_samples, count = area + VIT_PATTERNS * (uint64_t)s->sky_samples;
+    for (uint64_t i = 0; i < count; i++) {
+        const vit_emitter *e = VIT_RECORD(vit_emitter, emitters, i);
+        const float *unit = i < area ? e->normal : e->position;
+        if (!all_finite(e->position, 3) || !is_unit(unit))
+            return pack_refuse(why, "section EMIT: point %llu: position is not finite, or normal or direction not a unit vector",
+                               (unsigned long long)i);
+        if (i < area ? !in_range(e->radius2, FLT_MIN, FLT_MAX) : !all_in_range(&e->radius2, 1, 0.0f, 0.0f))
+            return pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky", (unsigned long long)i);
+        if (!all_in_range(e->power, 3, 0.0f, VIT_MAX_INTENSITY))
+            return pack_refuse(why, "section EMIT: point %llu: power must be in 0..1e15", (unsigned long long)i);
+    }
+    return VIT_OK;
+}
+
+vit_status pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why) {
+    for (uint64_t i = 0; i < (s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0); i++)
+        if (!all_in_range(VIT_RECORD(vit_sky_texel, texels, i)->radiance, 3, 0.0f, VIT_MAX_RADIANCE))
+            return pack_refuse(why, "section SKYT: texel %llu: radiance must be in 0..%g", (unsigned long long)i, (double)VIT_MAX_RADIANCE);
+    return VIT_OK;
+}
+
 static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
     if (!all_finite(p->position, 3) || !all_finite(p->direction, 3) || !all_finite(&p->radius2, 1) ||
         !all_finite(&p->inv_radius2, 1))
         return "position, direction or radius is not finite";
     if (!all_in_range(p->power, 3, 0.0f, VIT_MAX_PHOTON))
         return "power must be in 0..1e30";
-    const vit_u32 zone = p->zone & (s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f ? ~(p->zone & (0u - p->zone)) : ~0u);
-    if (zone != 0 || (p->zone == 0 && s->effects & VIT_EFFECT_BIT_ZONES && p->radius2 > 0.0f))
+    const vit_u32 zone = p->zone & (s->effects & VIT_BIT(ZONES) && p->radius2 > 0.0f ? ~(p->zone & (0u - p->zone)) : ~0u);
+    if (zone != 0 || (p->zone == 0 && s->effects & VIT_BIT(ZONES) && p->radius2 > 0.0f))
         return "zone is not one bit, or not 0 without zones";
     if (p->radius2 < 0.0f)
         return all_in_range(p->power, 3, 0.0f, 0.0f) ? 0 : "an empty slot has power";

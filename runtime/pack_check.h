@@ -24,6 +24,8 @@ vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, 
 vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why);
 vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why);
 vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why);
+vit_status pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why);
+vit_status pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why);
 vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why);
 
 /* pack_check_tree.c: triangles, then the tree over them. */

@@ -50,11 +50,21 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"baked", s->baked, 0, MAX_PHOTONS},
         {"cells", s->cells, 0, VIT_SIDE_CELL},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
+        {"area_samples", s->area_samples, 0, VIT_MAX_LIGHT_SAMPLES},
+        {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},
+        {"sky_size", s->sky_size, 0, VIT_MAX_SKY},
+        {"chain", s->chain, 0, VIT_MAX_CHAIN},
+        {"copies", s->copies, 1, VIT_MAX_COPIES},
         {"slice_count", s->slice_count, 1, MAX_SLICES},
     };
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
         if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)
             return refuse_count(why, counts[i].name, counts[i].least, counts[i].most, counts[i].value);
+    if (s->copies & (s->copies - 1)) {
+        if (why)
+            snprintf(why->text, sizeof why->text, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
+        return VIT_BAD_INPUT;
+    }
     if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64) {
         if (why)
             snprintf(why->text, sizeof why->text, "tile must be 8, 16, 32 or 64, got %u", s->tile);
@@ -75,7 +85,7 @@ static vit_status derive_keys(vit_scene *s, vit_text *why) {
     s->key_bits_x = bits_for(s->tiles_x);
     s->key_bits_y = bits_for(s->tiles_y);
     s->key_bits_z = bits_for(s->slice_count);
-    s->key_bits_n = s->effects & VIT_EFFECT_BIT_NORMAL_KEYS ? NORMAL_KEY_BITS : 0;
+    s->key_bits_n = s->effects & VIT_BIT(NORMAL_KEYS) ? NORMAL_KEY_BITS : 0;
     s->key_bits = s->key_bits_x + s->key_bits_y + s->key_bits_z + s->key_bits_n;
     if (s->key_bits > MAX_KEY_BITS)
         return refuse_count(why, "key_bits", 0, MAX_KEY_BITS, s->key_bits);

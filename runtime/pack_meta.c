@@ -30,13 +30,13 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 
 static vit_status check_floats(const vit_scene *s, vit_text *why) {
     const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
-    const bool small = s->effects & VIT_EFFECT_BIT_SMALL_SAMPLES;
+    const bool small = s->effects & VIT_BIT(SMALL_SAMPLES);
     const struct {
         const char *name;
         float value, least, most;
     } floats[] = {
         {"fps", s->fps, least, 1000.0f},
-        {"radius", s->radius, s->effects & VIT_EFFECT_BIT_PHOTONS ? VIT_MIN_RADIUS : 0.0f, 1.0f / VIT_MIN_RADIUS},
+        {"radius", s->radius, s->effects & VIT_BIT(PHOTONS) ? VIT_MIN_RADIUS : 0.0f, 1.0f / VIT_MIN_RADIUS},
         {"flatten", s->flatten, 0.0f, FLT_MAX},
         {"ray_offset", s->ray_offset, 0.0f, FLT_MAX},
         {"box_pad", s->box_pad, 0.0f, FLT_MAX},
@@ -46,6 +46,10 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"grid_low y", s->grid_low[1], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
         {"grid_low z", s->grid_low[2], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
         {"grid_step", s->grid_step, small ? least : 0.0f, small ? FLT_MAX / 65536 : 0.0f},
+        {"contrast", s->contrast, 0.0f, 1.0f},
+        {"ambient red", s->ambient[0], 0.0f, VIT_MAX_RADIANCE},
+        {"ambient green", s->ambient[1], 0.0f, VIT_MAX_RADIANCE},
+        {"ambient blue", s->ambient[2], 0.0f, VIT_MAX_RADIANCE},
         {"background red", s->background[0], 0.0f, VIT_MAX_RADIANCE},
         {"background green", s->background[1], 0.0f, VIT_MAX_RADIANCE},
         {"background blue", s->background[2], 0.0f, VIT_MAX_RADIANCE},
@@ -54,18 +58,21 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         if (!in_range(floats[i].value, floats[i].least, floats[i].most))
             return pack_refuse(why, "section META: %s must be in %g..%g, got %g", floats[i].name, (double)floats[i].least,
                                (double)floats[i].most, (double)floats[i].value);
-    return VIT_OK;
+    for (int i = 0; i < VIT_MAX_COPIES; i++)
+        if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
+            return pack_refuse(why, "section META: offset %d must be in -1..1", i);
+    return all_zero(s->pad, 5) ? VIT_OK : pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
 static vit_status check_needs(const vit_scene *s, vit_text *why) {
     static const struct {
         const char *name;
-        vit_u32 bit;
+        vit_u64 bit;
         const char *needed_name;
-        vit_u32 needed;
+        vit_u64 needed;
     } needs[] = {
-#define X(effect, needed) {#effect, VIT_EFFECT_BIT_##effect, #needed, VIT_EFFECT_BIT_##needed},
+#define X(effect, needed) {#effect, VIT_BIT(effect), #needed, VIT_BIT(needed)},
         VIT_EFFECT_NEEDS(X)
 #undef X
     };
@@ -76,28 +83,36 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
 }
 
 static vit_status check_effects(const vit_scene *s, vit_text *why) {
-#define X(bit, name, macro, reason) | VIT_EFFECT_BIT_##macro
-    const vit_u32 known = 0u VIT_EFFECTS(X);
+#define X(bit, name, macro, reason) | VIT_BIT(macro)
+    const vit_u64 known = 0u VIT_EFFECTS(X);
 #undef X
-    const vit_u32 e = s->effects, textured = VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT;
+    const vit_u64 e = s->effects, textured = VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT);
     if (e & ~known)
-        return pack_refuse(why, "section META: unknown effects 0x%x", e & ~known);
+        return pack_refuse(why, "section META: unknown effects 0x%llx", (unsigned long long)(e & ~known));
     vit_status status = check_needs(s, why);
     if (status != VIT_OK)
         return status;
-    const bool photons = e & VIT_EFFECT_BIT_PHOTONS, list = e & VIT_EFFECT_BIT_LIST, buckets = e & VIT_EFFECT_BIT_BUCKETS;
+    const bool photons = e & VIT_BIT(PHOTONS), list = e & VIT_BIT(LIST), buckets = e & VIT_BIT(BUCKETS);
     if (list && buckets)
         return pack_refuse(why, "section META: effects LIST and BUCKETS exclude each other");
-    if ((e & VIT_EFFECT_BIT_NEAREST) && (e & VIT_EFFECT_BIT_TRILINEAR))
+    if ((e & VIT_BIT(NEAREST)) && (e & VIT_BIT(TRILINEAR)))
         return pack_refuse(why, "section META: effects NEAREST and TRILINEAR exclude each other");
     if (photons && !list && !buckets)
         return pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
-    if ((s->lights > 0) != ((e & VIT_EFFECT_BIT_LIGHTS) != 0))
+    if ((s->lights > 0) != ((e & VIT_BIT(LIGHTS)) != 0))
         return pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
-    if ((s->paths > 0) != ((e & VIT_EFFECT_BIT_TRACED) != 0))
+    if ((s->paths > 0) != ((e & VIT_BIT(TRACED)) != 0))
         return pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
-    if ((s->cells > 0) != ((e & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA)) != 0))
+    if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
         return pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
+    if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
+        return pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT", s->area_samples, s->sky_samples);
+    if ((s->sky_size > 0) != ((e & VIT_BIT(SKY_IMAGE)) != 0))
+        return pack_refuse(why, "section META: a sky of %u texels a side contradicts the effect SKY_IMAGE", s->sky_size);
+    if ((s->chain > 0) != ((e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0))
+        return pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
+    if ((s->copies > 1) != ((e & VIT_BIT(ANTIALIAS)) != 0))
+        return pack_refuse(why, "section META: %u copies contradict the effect ANTIALIAS", s->copies);
     if (s->baked > 0 && !photons)
         return pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
     if ((e & textured) && s->textures == 0)
@@ -106,7 +121,7 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
 }
 
 static vit_status check_bounds(const vit_scene *s, vit_text *why) {
-    const vit_u32 root = s->effects & VIT_EFFECT_BIT_PHOTONS ? 1 : 0; /* the hierarchy always has one */
+    const vit_u32 root = s->effects & VIT_BIT(PHOTONS) ? 1 : 0; /* the hierarchy always has one */
     if (s->max_nodes < root || s->max_nodes > MAX_NODES)
         return pack_refuse(why, "section META: max_nodes must be in %u..%u, got %u", root, MAX_NODES, s->max_nodes);
     if (s->max_list > MAX_LIST)

@@ -145,6 +145,10 @@ static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text
     if (status == VIT_OK)
         status = pack_check_cells(s, at[VIT_SECTION_SIDE], at[VIT_SECTION_CELL], why);
     if (status == VIT_OK)
+        status = pack_check_emitters(s, at[VIT_SECTION_EMIT], why);
+    if (status == VIT_OK)
+        status = pack_check_sky(s, at[VIT_SECTION_SKYT], why);
+    if (status == VIT_OK)
         status = pack_check_photons(s, at[VIT_SECTION_PHOT], why);
     if (status == VIT_OK)
         status = pack_check_golds(s, at[VIT_SECTION_GOLD], why);
@@ -173,6 +177,8 @@ vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text
     if (found.bytes[VIT_SECTION_META] != sizeof(vit_scene))
         return pack_refuse(why, "section META: %zu bytes, expected %zu", found.bytes[VIT_SECTION_META], sizeof(vit_scene));
     const vit_scene *s = VIT_RECORD(vit_scene, (const vit_scene *)found.section[VIT_SECTION_META], 0);
+    if (VIT_BIG_ENDIAN)
+        vit_swap_scene((vit_scene *)(uintptr_t)s); /* which is a copy then */
     status = pack_check_meta(s, why);
     if (status == VIT_OK)
         status = check_sizes(s, &found, why);

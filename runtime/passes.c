@@ -3,7 +3,7 @@
 
 #define B(name) B_##name
 #define V(name) V_##name
-#define X(name, when, extent, repeat, writes, ...) {#name, when, extent, repeat, writes, {__VA_ARGS__, V_END}},
+#define X(name, when, rounds, extent, repeat, writes, ...) {#name, when, rounds, extent, repeat, writes, {__VA_ARGS__, V_END}},
 const vit_pass vit_passes[] = {VIT_PASSES(X)};
 #undef X
 #undef B
@@ -19,7 +19,7 @@ const vit_section vit_buffer_sections[B_COUNT] = {VIT_BUFFERS(X)};
 #undef X
 
 #define X(name, when, section, bytes) when,
-static const uint32_t buffer_when[B_COUNT] = {VIT_BUFFERS(X)};
+static const uint64_t buffer_when[B_COUNT] = {VIT_BUFFERS(X)};
 #undef X
 
 int vit_pass_called(uint32_t pass, const vit_limits *l) {
@@ -59,7 +59,7 @@ uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l) {
 }
 
 const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
-    uint32_t by = buffer_when[buffer] & l->effects;
+    uint64_t by = buffer_when[buffer] & l->effects;
     if (buffer_when[buffer] == ALWAYS)
         return "always";
 #define X(bit, name, macro, why)                                                                                               \
@@ -67,7 +67,28 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
         return name;
     VIT_EFFECTS(X)
 #undef X
+    if (by & ON_CHAINS)
+        return l->effects & ON(MIRROR) ? "mirror" : "glass";
+    if (by & ON_FILM)
+        return l->effects & ON(ANTIALIAS) ? "antialias" : "glass";
     return by & ON_DOTS ? "view photons" : by & ON_WORK ? "count_work" : "not called for";
+}
+
+int vit_pass_in_round(const vit_pass *p, const vit_limits *l, uint32_t round) {
+    switch (p->rounds) {
+    case FIRST:
+        return round == 0;
+    case SECOND_COPY:
+        return round == l->layers;
+    case AT_END:
+        return round + 1 == l->rounds;
+    default:
+        return 1;
+    }
+}
+
+uint32_t vit_pass_rounds(const vit_pass *p, const vit_limits *l) {
+    return p->rounds == EACH ? l->rounds : p->rounds != SECOND_COPY || l->rounds > l->layers;
 }
 
 static uint32_t level_words(const vit_scene *s, uint32_t level) {

@@ -6,15 +6,20 @@
 #include "vitrine.h"
 #include "vitrine_pack.h"
 
-#define ON(macro) ((uint32_t)VIT_EFFECT_BIT_##macro)
-#define ON_DOTS 0x80000000u /* not an effect of the pack: the view `photons` */
-#define ON_WORK 0x40000000u /* likewise: vit_open_info.count_work */
-#define ON_DENSE 0x20000000u /* likewise: indirect light is estimated at every sample */
-#define ALWAYS 0u
+#define ON(macro) VIT_BIT(macro)
+/* Not effects of the pack: */
+#define ON_DOTS ((uint64_t)1 << 63)  /* the view `photons` */
+#define ON_WORK ((uint64_t)1 << 62)  /* vit_open_info.count_work */
+#define ON_DENSE ((uint64_t)1 << 61) /* indirect light is estimated at every sample */
+#define ON_FILM ((uint64_t)1 << 60)  /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
+#define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
+#define ALWAYS ((uint64_t)0)
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
 typedef struct vit_limits {
-    uint32_t effects;          /* the pack's, ON_DOTS, ON_WORK, ON_DENSE */
+    uint64_t effects;          /* the pack's, and ON_DOTS... */
+    uint32_t rounds;           /* times that the passes of a frame's view samples run: copies * layers */
+    uint32_t layers;           /* view samples of a ray: 2 where glass also mirrors, else 1 */
     uint32_t max_nodes, max_list;
     vit_format format;
     vit_view view;
@@ -48,12 +53,21 @@ typedef struct vit_limits {
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                          \
     X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                             \
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                            \
+    X(emitters, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_emitter)) \
+    X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                                    \
     X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
     X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
     X(position, ALWAYS, NONE, (uint64_t)s->samples * VIT_POSITION(l))                                                                         \
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \
+    X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 8)                                                                          \
+    X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                          \
+    X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                               \
+    X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                                \
+    X(edges, ON(ANTIALIAS), NONE, s->samples / 16 * 4)                                                                           \
+    X(shown, ON(ANTIALIAS), NONE, (uint64_t)s->samples * 4)                                                                      \
+    X(film, ON_FILM, NONE, (uint64_t)s->samples * 12)                                                                            \
     X(accept, ON(ZONES), NONE, (uint64_t)s->samples * 4)                                                                         \
     X(inverse_area, ON(AREA), NONE, (uint64_t)s->samples * 4)                                                                    \
     X(photons, ON(PHOTONS), NONE, (uint64_t)s->photons * sizeof(vit_photon))                                                     \
@@ -73,7 +87,7 @@ typedef struct vit_limits {
     X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                              \
     X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
     X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
-    X(counters, ALWAYS, NONE, 2 * VIT_COUNTER_COUNT * 4)                                                                         \
+    X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                         \
     X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                            \
     X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
     X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
@@ -87,6 +101,8 @@ typedef enum vit_buffer {
     B_COUNT,
     /* Arguments by value, in the same list of a pass's arguments. */
     V_frame = B_COUNT,
+    V_round,
+    V_layers,
     V_level,
     V_run,
     V_chunks,
@@ -120,11 +136,20 @@ typedef enum vit_repeat {
     LAST,                      /* the last level only */
 } vit_repeat;
 
-#define VIT_MAX_ARGS 24
+/* In which rounds of a frame a pass runs. A round takes one view sample a pixel: copy round / layers, layer round % layers. */
+typedef enum vit_rounds {
+    EACH,
+    FIRST,                     /* the first only */
+    SECOND_COPY,               /* the first of the second copy */
+    AT_END,                    /* the last only */
+} vit_rounds;
+
+#define VIT_MAX_ARGS 32
 
 typedef struct vit_pass {
     const char *name;          /* also the kernel's */
-    uint32_t when;             /* all of these effects; ALWAYS */
+    uint64_t when;             /* all of these effects; ALWAYS */
+    vit_rounds rounds;
     vit_extent extent;
     vit_repeat repeat;
     uint64_t writes;           /* bits of vit_buffer */
@@ -136,6 +161,11 @@ extern const vit_pass vit_passes[];
 extern const uint32_t vit_pass_count;
 extern const char *const vit_buffer_names[B_COUNT];
 extern const vit_section vit_buffer_sections[B_COUNT];
+
+/* Does a pass run in this round? */
+int vit_pass_in_round(const vit_pass *p, const vit_limits *l, uint32_t round);
+/* Rounds that a pass runs in. */
+uint32_t vit_pass_rounds(const vit_pass *p, const vit_limits *l);
 
 /* Does the frame need the pass, the buffer? */
 int vit_pass_called(uint32_t pass, const vit_limits *l);

@@ -4,10 +4,10 @@
 #include <string.h>
 
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
-    uint32_t c[2 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];
-    const uint32_t *total = c + VIT_COUNTER_COUNT;
+    uint32_t counters[3 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];
+    const uint32_t *total = counters + VIT_COUNTER_COUNT, *c = counters + 2 * VIT_COUNTER_COUNT;
     memset(out, 0, sizeof *out);
-    vit_status status = v->device->read(v->state, B_counters, sizeof c, c, why);
+    vit_status status = v->device->read(v->state, B_counters, sizeof counters, counters, why);
     if (status == VIT_OK && (v->limits.effects & ON_WORK))
         status = v->device->read(v->state, B_work, sizeof work, work, why);
     if (status != VIT_OK)

@@ -93,9 +93,9 @@ static inline void fixture_scene(vit_scene *s) {
                      .frames = FIXTURE_FRAMES,
                      .fps = 30,
                      .tile = 16,
-                     .effects = VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_SPOT | VIT_EFFECT_BIT_RANGE | VIT_EFFECT_BIT_TEXTURES |
-                                VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_ZONES |
-                                VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE,
+                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) |
+                                VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) |
+                                VIT_BIT(AREA) | VIT_BIT(SEQUENCE),
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,

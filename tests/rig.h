@@ -88,7 +88,7 @@ static inline void rig_photons(rig *r, vit_photon *photons, uint32_t count, floa
     r->photons = photons;
     r->scene.baked = count;
     r->scene.radius = radius;
-    r->scene.effects |= VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_LIST;
+    r->scene.effects |= VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
 }
 
 /* The pack's bytes; free() them. Scenes that say they have lights and have none get a dark one. */
@@ -98,7 +98,7 @@ static inline void *rig_pack(rig *r, size_t *size) {
     void *bytes = NULL;
     const vit_light *lights = r->lights;
     vit_light *own = NULL;
-    if ((s->effects & VIT_EFFECT_BIT_LIGHTS) && !lights) {
+    if ((s->effects & VIT_BIT(LIGHTS)) && !lights) {
         s->lights = 1;
         lights = own = ray_lab_array(s->frames, sizeof *own);
         for (uint32_t i = 0; i < s->frames; i++)

@@ -26,8 +26,8 @@ static inline view_frame view_frame_read(const open_pack *p, uint32_t frame) {
     f.normal = read_buffer(p, B_normal);
     f.hit = read_buffer(p, B_hit_triangle);
     f.keys = read_buffer(p, B_keys);
-    f.accept = f.s->effects & VIT_EFFECT_BIT_ZONES ? read_buffer(p, B_accept) : NULL;
-    f.inverse_area = f.s->effects & VIT_EFFECT_BIT_AREA ? read_buffer(p, B_inverse_area) : NULL;
+    f.accept = f.s->effects & VIT_BIT(ZONES) ? read_buffer(p, B_accept) : NULL;
+    f.inverse_area = f.s->effects & VIT_BIT(AREA) ? read_buffer(p, B_inverse_area) : NULL;
     f.indirect = read_buffer(p, B_indirect);
     f.photons = read_buffer(p, B_photons);
     return f;

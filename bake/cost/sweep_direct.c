@@ -11,7 +11,7 @@ static uint64_t key_of(const sweep_pack *pack) {
                                VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS};
     const vit_pack_entry *table = (const void *)((const char *)pack->bytes + sizeof(vit_pack_header));
     const vit_scene *meta = (const void *)((const char *)pack->bytes + table[VIT_SECTION_META].offset);
-    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~vit_effects_upon(VIT_EFFECT_BIT_PHOTONS),
+    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~vit_effects_upon(VIT_BIT(PHOTONS)),
                                                         (uint64_t)meta->width << 32 | meta->height};
     for (size_t i = 0; i < sizeof seen / sizeof seen[0]; i++)
         parts[i + 2] = table[seen[i]].hash;

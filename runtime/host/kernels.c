@@ -8,7 +8,7 @@
 #define X(bit, name, macro, why) static _Thread_local uint VIT_EFFECT_##macro;
 VIT_EFFECTS(X)
 #undef X
-static _Thread_local uint VIT_EFFECT_DOTS, VIT_VIEW, VIT_FORMAT, host_counts;
+static _Thread_local uint VIT_EFFECT_DOTS, VIT_EFFECT_FILM, VIT_EFFECT_CHAINS, VIT_VIEW, VIT_FORMAT, host_counts;
 #define VIT_WITH(effect) 1
 #define VIT_WITH_DENSE 1
 #define VIT_COUNT_WORK 1
@@ -21,6 +21,8 @@ static void set_variables(const host_call *call) {
     VIT_EFFECTS(X)
 #undef X
     VIT_EFFECT_DOTS = (call->effects & ON_DOTS) != 0;
+    VIT_EFFECT_FILM = (call->effects & ON_FILM) != 0;
+    VIT_EFFECT_CHAINS = (call->effects & ON_CHAINS) != 0;
     VIT_VIEW = (uint)call->view;
     VIT_FORMAT = (uint)call->format;
     host_counts = (call->effects & ON_WORK) != 0;
@@ -29,7 +31,7 @@ static void set_variables(const host_call *call) {
 /* A row of the table as a call of its kernel. */
 #define B(name) (call->buffers[B_##name])
 #define V(name) (call->name)
-#define X(name, when, extent, repeat, writes, ...)                                                                             \
+#define X(name, when, rounds, extent, repeat, writes, ...)                                                                             \
     static void run_##name(const host_call *call) {                                                                            \
         name(__VA_ARGS__);                                                                                                     \
     }

@@ -143,12 +143,12 @@ void report_faults(vit *v, FILE *to) {
                       f[i].pass ? f[i].pass : "", f[i].meaning, f[i].code, f[i].count);
 }
 
-static void print_effects(uint32_t effects, FILE *to) {
+static void print_effects(uint64_t effects, FILE *to) {
     static const struct {
-        uint32_t bit;
+        uint64_t bit;
         const char *name, *why;
     } rows[] = {
-#define X(bit, name, macro, why) {(uint32_t)1 << bit, name, why},
+#define X(bit, name, macro, why) {(uint64_t)1 << bit, name, why},
         VIT_EFFECTS(X)
 #undef X
     };

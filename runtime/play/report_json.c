@@ -51,7 +51,7 @@ static void put_scene(const report_json *r, FILE *to) {
     (void)fprintf(to, "  \"scene\": {\"width\": %u, \"height\": %u, \"frames\": %u, \"fps\": %.6f, \"effects\": [", n->width,
                   n->height, n->frames, (double)n->fps);
 #define X(bit, name, macro, why)                                                                                               \
-    if (n->effects & (uint32_t)VIT_EFFECT_BIT_##macro) {                                                                       \
+    if (n->effects & VIT_BIT(macro)) {                                                                       \
         (void)fprintf(to, "%s\"%s\"", comma, name);                                                                            \
         comma = ", ";                                                                                                          \
     }

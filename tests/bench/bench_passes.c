@@ -8,8 +8,8 @@
 
 enum { LIST, BUCKETS, RAW, ESTIMATES };
 static const char *const estimate_names[ESTIMATES] = {"list", "buckets", "raw"};
-static const uint32_t estimate_effects[ESTIMATES] = {VIT_EFFECT_BIT_LIST, VIT_EFFECT_BIT_BUCKETS,
-                                                     VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS};
+static const uint32_t estimate_effects[ESTIMATES] = {VIT_BIT(LIST), VIT_BIT(BUCKETS),
+                                                     VIT_BIT(BUCKETS) | VIT_BIT(RAW_BUCKETS)};
 
 typedef struct contest {
     const char *scene, *size;

@@ -41,11 +41,11 @@ static inline void image_free(pack_image *p) {
 }
 
 #define VARIANT_PHOTON_EFFECTS                                                                                                 \
-    (uint32_t)(VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS |                 \
-               VIT_EFFECT_BIT_RAW_BUCKETS | VIT_EFFECT_BIT_FLATTENED | VIT_EFFECT_BIT_NORMAL_KEYS)
+    (uint32_t)(VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS) |                 \
+               VIT_BIT(RAW_BUCKETS) | VIT_BIT(FLATTENED) | VIT_BIT(NORMAL_KEYS))
 
 typedef struct variant {
-    uint32_t estimate; /* VIT_EFFECT_BIT_LIST, or _BUCKETS, with _RAW_BUCKETS or without; 0: no photons at all */
+    uint32_t estimate; /* VIT_BIT(LIST), or _BUCKETS, with _RAW_BUCKETS or without; 0: no photons at all */
     double radius;     /* metres; 0: the pack's own */
     bool solid;        /* cut-outs filled: every triangle stops every ray, as in Embree without filters */
 } variant;
@@ -61,7 +61,7 @@ static inline void variant_apply(const variant *v, variant_records *r) {
     vit_scene *s = &r->scene;
     if (v->estimate)
         s->effects =
-            (s->effects & ~(uint32_t)(VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS | VIT_EFFECT_BIT_RAW_BUCKETS)) | v->estimate;
+            (s->effects & ~(uint32_t)(VIT_BIT(LIST) | VIT_BIT(BUCKETS) | VIT_BIT(RAW_BUCKETS))) | v->estimate;
     if (v->estimate && v->radius > 0)
         s->radius = (float)v->radius;
     if (!v->estimate) {
@@ -71,7 +71,7 @@ static inline void variant_apply(const variant *v, variant_records *r) {
             r->lights[i].path_first = r->lights[i].path_count = 0;
     }
     if (v->solid) {
-        s->effects &= ~(uint32_t)VIT_EFFECT_BIT_CUTOUT;
+        s->effects &= ~VIT_BIT(CUTOUT);
         for (uint32_t i = 0; i < s->materials; i++)
             r->materials[i].cutout = 0;
     }

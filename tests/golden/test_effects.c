@@ -114,7 +114,7 @@ static void without_photons_four_passes_and_no_photon_buffer_are_left(void **sta
     for (uint32_t i = 0; i < 4; i++)
         assert_string_equal(need.passes[i], passes[i]);
     assert_int_equal(
-        need.effects & (VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | VIT_EFFECT_BIT_LIST | VIT_EFFECT_BIT_BUCKETS), 0);
+        need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS)), 0);
     static const char buffers[] = " scene cameras lights triangles attributes bvh materials hit_triangle hit_distance position "
                                   "normal albedo direct counters framebuffer ";
     for (uint32_t i = 0; i < need.buffer_count; i++)
@@ -173,9 +173,9 @@ static void a_texture_filter_takes_no_buffer_and_no_pass(void **state) {
     (void)state;
     only_adds("nearest", "room", " ", " ");
     only_adds("trilinear", "room", " ", " ");
-    assert_int_equal(requirements("room").effects & (VIT_EFFECT_BIT_NEAREST | VIT_EFFECT_BIT_TRILINEAR), 0);
-    assert_true(requirements("nearest").effects & VIT_EFFECT_BIT_NEAREST);
-    assert_true(requirements("trilinear").effects & VIT_EFFECT_BIT_TRILINEAR);
+    assert_int_equal(requirements("room").effects & (VIT_BIT(NEAREST) | VIT_BIT(TRILINEAR)), 0);
+    assert_true(requirements("nearest").effects & VIT_BIT(NEAREST));
+    assert_true(requirements("trilinear").effects & VIT_BIT(TRILINEAR));
 }
 
 static void small_samples_halve_the_positions_and_nothing_else(void **state) {
@@ -199,7 +199,7 @@ static void zones_and_areas_add_their_cells_and_a_word_a_sample_each(void **stat
     assert_int_equal(bytes_of(&all, "accept"), bytes_of(&plain, "keys"));
     assert_int_equal(bytes_of(&all, "inverse_area"), bytes_of(&plain, "keys"));
     assert_int_equal(bytes_of(&all, "sides"), bytes_of(&plain, "triangles") / sizeof(vit_triangle) * 2 * sizeof(vit_u32));
-    assert_int_equal(plain.effects & (VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_AREA | VIT_EFFECT_BIT_SEQUENCE), 0);
+    assert_int_equal(plain.effects & (VIT_BIT(ZONES) | VIT_BIT(AREA) | VIT_BIT(SEQUENCE)), 0);
 }
 
 static void still_lights_have_no_pass_that_traces_photons(void **state) {
@@ -213,8 +213,8 @@ static void a_scene_without_lights_has_neither_lights_nor_photons(void **state) 
     assert_int_equal(bytes_of(&need, "lights"), 0);
     assert_int_equal(need.pass_count, 3);
     assert_false(has_pass(&need, "direct_light"));
-    assert_int_equal(need.effects & (VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_PHOTONS), 0);
-    assert_true(need.effects & VIT_EFFECT_BIT_EMISSION);
+    assert_int_equal(need.effects & (VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS)), 0);
+    assert_true(need.effects & VIT_BIT(EMISSION));
 }
 
 static void a_scene_without_textures_has_no_atlas(void **state) {
@@ -225,8 +225,8 @@ static void a_scene_without_textures_has_no_atlas(void **state) {
         assert_int_equal(bytes_of(&plain, buffers[i]), 0);
         assert_true(bytes_of(&textured, buffers[i]) > 0);
     }
-    assert_int_equal(plain.effects & (VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT | VIT_EFFECT_BIT_EMISSION), 0);
-    assert_true(textured.effects & VIT_EFFECT_BIT_CUTOUT);
+    assert_int_equal(plain.effects & (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION)), 0);
+    assert_true(textured.effects & VIT_BIT(CUTOUT));
 }
 
 /* All kernels that the program holds, with a space on each side of each. */

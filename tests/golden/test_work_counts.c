@@ -113,7 +113,7 @@ static counted *count_and_read(const char *pack, vit_open_info how) {
     c->s = pack_stats(&c->p);
     c->scene = c->p.v->pack.scene;
     c->hits = read_buffer(&c->p, B_hit_triangle);
-    if (c->scene->effects & VIT_EFFECT_BIT_PHOTONS) {
+    if (c->scene->effects & VIT_BIT(PHOTONS)) {
         c->keys = read_buffer(&c->p, B_keys);
         c->masks = read_buffer(&c->p, B_masks);
         c->prefix = read_buffer(&c->p, B_prefix);
@@ -154,7 +154,7 @@ static void rays_and_hits_are_those_of_the_buffers(void **state) {
         assert_int_equal(WORK(&c->s, visibility, view_rays), (uint64_t)c->scene->width * c->scene->height);
         assert_int_equal(total(&c->s, VIT_WORK_view_rays), WORK(&c->s, visibility, view_rays));
         assert_int_equal(WORK(&c->s, samples, surface_points), hits);
-        assert_int_equal(WORK(&c->s, samples, texture_fetches), c->scene->effects & VIT_EFFECT_BIT_TEXTURES ? textured : 0);
+        assert_int_equal(WORK(&c->s, samples, texture_fetches), c->scene->effects & VIT_BIT(TEXTURES) ? textured : 0);
         assert_in_range(WORK(&c->s, direct_light, shadow_rays), hits / 2, hits * c->scene->lights);
         drop(c);
     }
@@ -321,7 +321,7 @@ static void node_tests_and_pairs_are_those_of_the_hierarchy(void **state) {
         }
         const uint32_t inner = c->s.nodes - c->s.clusters, *level = c->scene->level_first;
         const uint32_t last = c->scene->levels == 1 ? 0 : c->prefix[level[c->scene->levels - 2]];
-        const int lists = (c->scene->effects & VIT_EFFECT_BIT_LIST) != 0;
+        const int lists = (c->scene->effects & VIT_BIT(LIST)) != 0;
         const uint64_t listed = tests_of_nodes(c, 0, lists ? inner : last);
         assert_int_equal(WORK(&c->s, splat_count, node_tests), listed);
         assert_int_equal(WORK(&c->s, splat_write, node_tests), listed);

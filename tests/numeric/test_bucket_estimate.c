@@ -94,7 +94,7 @@ static list_check check_samples(const bucket_frame *b, uint64_t *dark_wrong) {
                 *dark_wrong += is[0] != 0 || is[s->samples] != 0 || is[2 * (size_t)s->samples] != 0;
                 continue;
             }
-            if (s->effects & VIT_EFFECT_BIT_RAW_BUCKETS) {
+            if (s->effects & VIT_BIT(RAW_BUCKETS)) {
                 (void)cluster_at(b, b->f.keys[i], &buckets);
                 oracle_bucket_light(s, buckets, own.normal, e);
             } else
@@ -117,7 +117,7 @@ static void check_pack(const char *name, const char *pack_name, pack_edit *edit,
     float *buckets = read_buffer(&p, B_buckets);
     find_clusters(&b);
     assert_int_equal(b.count, stats.clusters);
-    b.each = b.f.s->effects & VIT_EFFECT_BIT_RAW_BUCKETS ? ORACLE_DIRECTIONS : ORACLE_OCTANTS;
+    b.each = b.f.s->effects & VIT_BIT(RAW_BUCKETS) ? ORACLE_DIRECTIONS : ORACLE_OCTANTS;
     b.buckets = buckets + 4 * (size_t)b.each * (stats.nodes - stats.clusters);
     const list_check sums = check_sums(&b), samples = check_samples(&b, &dark_wrong);
     (void)printf("%s: %zu clusters; %llu of %llu buckets lit\n", name, b.count, (unsigned long long)sums.lit,
@@ -156,7 +156,7 @@ static void samples_before_and_behind_all_slices(void **state) {
 static void flatten(vit_scene *s, vit_camera *cameras, vit_light *lights) {
     (void)cameras;
     (void)lights;
-    s->effects |= VIT_EFFECT_BIT_FLATTENED;
+    s->effects |= VIT_BIT(FLATTENED);
     s->flatten = 15;
 }
 

@@ -89,9 +89,9 @@ static const clustering all[] = {
     {"tiles of 32", 32, 64, 8, 0},
     {"tiles of 16", 16, 64, 8, 0},
     {"tiles of 8", 8, 64, 8, 0},
-    {"tiles of 8 and normals", 8, 64, 8, VIT_EFFECT_BIT_NORMAL_KEYS},
-    {"tiles of 64 and normals", 64, 1, 1, VIT_EFFECT_BIT_NORMAL_KEYS},
-    {"a cluster nearly every sample", 8, 4096, 1000, VIT_EFFECT_BIT_NORMAL_KEYS},
+    {"tiles of 8 and normals", 8, 64, 8, VIT_BIT(NORMAL_KEYS)},
+    {"tiles of 64 and normals", 64, 1, 1, VIT_BIT(NORMAL_KEYS)},
+    {"a cluster nearly every sample", 8, 4096, 1000, VIT_BIT(NORMAL_KEYS)},
 };
 
 /* Pixels whose indirect light depends on the clustering, of `count` photons. */
@@ -113,7 +113,7 @@ static void check_clusterings(const char *what, uint32_t count, float radius, bo
         r.scene.tile = all[i].tile;
         r.scene.slice_count = all[i].slices;
         r.scene.slice_scale = all[i].scale;
-        r.scene.effects = (r.scene.effects & ~(uint32_t)VIT_EFFECT_BIT_NORMAL_KEYS) | all[i].effects;
+        r.scene.effects = (r.scene.effects & ~VIT_BIT(NORMAL_KEYS)) | all[i].effects;
         float *pixels = indirect_of(&r, &clusters, &list);
         (void)printf("%-32s %5u clusters, %8u pairs\n", all[i].name, clusters, list);
         assert_true(i > 0 || clusters == 1);

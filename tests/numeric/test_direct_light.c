@@ -34,7 +34,7 @@ static void none(const char *name, const char *what, uint64_t wrong, uint64_t co
 /* How far positions are from where they should be; small ones from 0.87 steps off the surface, which keeps them before it. */
 static void check_positions(const char *name, double bound) {
     view_frame f = open_frame(name, NULL);
-    const bool small = f.s->effects & VIT_EFFECT_BIT_SMALL_SAMPLES;
+    const bool small = f.s->effects & VIT_BIT(SMALL_SAMPLES);
     const double step = (double)f.s->grid_step;
     vit_triangle *triangles = read_buffer(&pack, B_triangles);
     double worst = 0;
@@ -136,7 +136,7 @@ static void check_light(const char *name, const char *pack_name, pack_edit *edit
     lit l = {.f = open_frame(pack_name, edit)};
     vit_light *lights = read_buffer(&pack, B_lights);
     light_check c = {0};
-    const bool textured = l.f.s->effects & (VIT_EFFECT_BIT_TEXTURES | VIT_EFFECT_BIT_CUTOUT);
+    const bool textured = l.f.s->effects & (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT));
     l.lights = lights + (size_t)(pack.need.frames - 1) * l.f.s->lights;
     l.albedo = read_buffer(&pack, B_albedo);
     l.direct = read_buffer(&pack, B_direct);
@@ -178,7 +178,7 @@ static void light_is_the_closed_form_or_is_shadowed(void **state) {
 /* Ranges that end in the room, of one light by a window alone. */
 static void shorten(vit_scene *s, vit_camera *cameras, vit_light *lights) {
     (void)cameras;
-    assert_true(s->lights == 2 && s->effects & VIT_EFFECT_BIT_RANGE);
+    assert_true(s->lights == 2 && s->effects & VIT_BIT(RANGE));
     for (uint32_t i = 0; i < s->frames; i++) {
         lights[2 * i].inv_range2 = 1 / (1.5f * 1.5f);
         lights[2 * i].falloff = VIT_FALLOFF_WINDOW;

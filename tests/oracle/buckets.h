@@ -36,7 +36,7 @@ static inline uint32_t oracle_bucket(const vit_scene *s, const float travel[3], 
     double from[3], side[2];
     int axis = 0, square[2];
     *near = 0;
-    if (!(s->effects & VIT_EFFECT_BIT_RAW_BUCKETS))
+    if (!(s->effects & VIT_BIT(RAW_BUCKETS)))
         return (travel[0] > 0) | (travel[1] > 0) << 1 | (travel[2] > 0) << 2;
     for (int k = 0; k < 3; k++) {
         from[k] = -(double)travel[k];
@@ -71,13 +71,13 @@ static inline void oracle_fill(const vit_scene *s, const vit_photon *photons, co
             off += o * middle[k];
             least += fmin(d * c->nlo[k], d * c->nhi[k]);
         }
-        if (s->effects & VIT_EFFECT_BIT_FLATTENED && middle2 > 0)
+        if (s->effects & VIT_BIT(FLATTENED) && middle2 > 0)
             d2 += off * off / middle2 * (double)s->flatten;
         if (!(q->radius2 > 0) || d2 >= (double)q->radius2)
             continue;
         const double weight = 1 - d2 / (double)q->radius2;
         const uint32_t bucket = oracle_bucket(s, q->direction, &near);
-        const int zones = (s->effects & VIT_EFFECT_BIT_ZONES) != 0;
+        const int zones = (s->effects & VIT_BIT(ZONES)) != 0;
         if (near || (!zones && fabs(least - ORACLE_BEHIND) < 1e-6)) {
             b->doubt += weight * (double)fmaxf(q->power[0], fmaxf(q->power[1], q->power[2]));
             continue;
@@ -93,9 +93,9 @@ static inline void oracle_fill(const vit_scene *s, const vit_photon *photons, co
  * front, clamp(1 + n o); directions as 2 max(0, n d). */
 static inline void oracle_bucket_light(const vit_scene *s, const float *buckets, const double n[3], double e[3]) {
     e[0] = e[1] = e[2] = 0;
-    for (int b = 0; b < (s->effects & VIT_EFFECT_BIT_RAW_BUCKETS ? ORACLE_DIRECTIONS : ORACLE_OCTANTS); b++) {
+    for (int b = 0; b < (s->effects & VIT_BIT(RAW_BUCKETS) ? ORACLE_DIRECTIONS : ORACLE_OCTANTS); b++) {
         double d[3], w;
-        if (s->effects & VIT_EFFECT_BIT_RAW_BUCKETS) {
+        if (s->effects & VIT_BIT(RAW_BUCKETS)) {
             const int axis = b / 18;
             d[axis] = b / 9 % 2 ? -1 : 1;
             d[axis == 0 ? 1 : 0] = (b % 3 - 1) * 2 / 3.0;

@@ -8,7 +8,7 @@
 
 /* Pixels between coarse samples. */
 static inline uint32_t oracle_coarse_step(const vit_scene *s) {
-    return s->effects & VIT_EFFECT_BIT_SPARSE_16 ? 4 : 2;
+    return s->effects & VIT_BIT(SPARSE_16) ? 4 : 2;
 }
 
 /* Of sample i, whose pixel is a coarse one: a block's are side by side, the one of the least pixel first. */
@@ -24,7 +24,7 @@ static inline double oracle_agreement(const vit_scene *s, const oracle_sample *o
     for (int k = 0; k < 3; k++)
         o[k] = own->position[k] - coarse->position[k];
     const double off = oracle_dot(o, own->normal) / step, cosine = fmax(oracle_dot(own->normal, coarse->normal), 0);
-    if (s->effects & VIT_EFFECT_BIT_ZONES && own->accept != coarse->accept)
+    if (s->effects & VIT_BIT(ZONES) && own->accept != coarse->accept)
         return 0;
     return fmax(1 - off * off, 0) * pow(cosine, 8);
 }

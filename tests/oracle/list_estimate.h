@@ -38,16 +38,16 @@ static inline void oracle_list_estimate(const vit_scene *s, const vit_photon *ph
             off += o * at->normal[k];
             front += at->normal[k] * (double)q->direction[k];
         }
-        if (s->effects & VIT_EFFECT_BIT_FLATTENED)
+        if (s->effects & VIT_BIT(FLATTENED))
             d2 += off * off * (double)s->flatten;
         if (!(q->radius2 > 0) || d2 >= (double)q->radius2)
             continue;
         const double weight = (1 - d2 / (double)q->radius2) * at->inverse_area;
-        if (!(s->effects & VIT_EFFECT_BIT_ZONES) && fabs(front) < 1e-6) {
+        if (!(s->effects & VIT_BIT(ZONES)) && fabs(front) < 1e-6) {
             *doubt += weight * (double)fmaxf(q->power[0], fmaxf(q->power[1], q->power[2]));
             continue;
         }
-        if (s->effects & VIT_EFFECT_BIT_ZONES ? (at->accept & q->zone) == 0 : front >= 0)
+        if (s->effects & VIT_BIT(ZONES) ? (at->accept & q->zone) == 0 : front >= 0)
             continue;
         for (int k = 0; k < 3; k++)
             e[k] += weight * (double)q->power[k];

@@ -14,7 +14,7 @@ static inline uint32_t oracle_number(const vit_scene *s, uint32_t x, uint32_t y)
 static inline void oracle_position(const vit_scene *s, const void *planes, uint32_t i, double p[3]) {
     for (size_t k = 0; k < 3; k++) {
         const size_t at = k * s->samples + i;
-        if (s->effects & VIT_EFFECT_BIT_SMALL_SAMPLES)
+        if (s->effects & VIT_BIT(SMALL_SAMPLES))
             p[k] = (double)s->grid_low[k] + (double)((const uint16_t *)planes)[at] * (double)s->grid_step;
         else
             p[k] = (double)((const float *)planes)[at];

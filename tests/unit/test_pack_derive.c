@@ -80,7 +80,7 @@ static void one_tile_and_one_slice_need_no_key_but_one_level(void **state) {
 static void normal_keys_cost_6_bits(void **state) {
     (void)state;
     vit_scene s = full_hd();
-    s.effects = VIT_EFFECT_BIT_NORMAL_KEYS;
+    s.effects = VIT_BIT(NORMAL_KEYS);
     assert_int_equal(vit_pack_derive(&s, NULL), VIT_OK);
     assert_int_equal(s.key_bits_n, 6);
     assert_int_equal(s.key_bits, 29);
@@ -91,7 +91,7 @@ static void keys_may_have_30_bits_but_not_31(void **state) {
     (void)state;
     vit_scene s = full_hd();
     vit_text why = {""};
-    s.effects = VIT_EFFECT_BIT_NORMAL_KEYS;
+    s.effects = VIT_BIT(NORMAL_KEYS);
     s.slice_count = 1024;
     assert_int_equal(vit_pack_derive(&s, &why), VIT_OK);
     assert_int_equal(s.key_bits, 30);

@@ -10,7 +10,7 @@
 
 #define ADD(count, by) im->scene->count += by
 #define EFFECTS(on, off) im->scene->effects = (im->scene->effects | (on)) & ~(vit_u32)(off)
-#define BIT(name) VIT_EFFECT_BIT_##name
+#define BIT(name) VIT_BIT(name)
 #define ENTRY(code) im->table[VIT_SECTION_##code]
 
 #define CONTAINER_FAULTS(X)                                                                                                    \

@@ -33,8 +33,8 @@ static vit_photon *kernel_photons(const room *r, const cells *c, uint32_t paths)
         lights[i].path_count = r->lights[i].paths;
     }
     lab l = lab_open(1,
-                     VIT_EFFECT_BIT_LIGHTS | VIT_EFFECT_BIT_SPOT | VIT_EFFECT_BIT_RANGE | VIT_EFFECT_BIT_TEXTURES |
-                         VIT_EFFECT_BIT_CUTOUT | VIT_EFFECT_BIT_PHOTONS | VIT_EFFECT_BIT_TRACED | r->in.effects,
+                     VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) |
+                         VIT_BIT(CUTOUT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | r->in.effects,
                      frame_zero);
     const cl_mem arguments[] = {lab_buffer(&l, &s, sizeof s),
                                 lab_buffer(&l, r->g.triangles, r->m.triangles * sizeof *r->g.triangles),
@@ -108,8 +108,8 @@ static void compare(uint32_t effects) {
     room *r = furnished_room();
     cells c = some_cells(r);
     r->in.effects = effects;
-    r->in.sequence = (effects & VIT_EFFECT_BIT_SEQUENCE) != 0;
-    r->in.cells = effects & VIT_EFFECT_BIT_ZONES ? &c : NULL;
+    r->in.sequence = (effects & VIT_BIT(SEQUENCE)) != 0;
+    r->in.cells = effects & VIT_BIT(ZONES) ? &c : NULL;
     const uint32_t paths = r->lights[0].paths, stored = r->in.bounces - 1;
     uint32_t count, alike = 0, same = 0, zones = 0;
     vit_photon *baked = room_bake(r, 2, &count), *traced = kernel_photons(r, &c, 2 * paths);
@@ -148,15 +148,15 @@ static void still_lights_have_the_photons_that_the_kernel_gives_moving_ones(void
 
 static void so_they_do_with_other_texture_filters(void **state) {
     (void)state;
-    compare(VIT_EFFECT_BIT_NEAREST);
-    compare(VIT_EFFECT_BIT_TRILINEAR);
+    compare(VIT_BIT(NEAREST));
+    compare(VIT_BIT(TRILINEAR));
 }
 
 static void so_they_do_with_zones_and_the_bounce_sequence(void **state) {
     (void)state;
-    compare(VIT_EFFECT_BIT_SEQUENCE);
-    compare(VIT_EFFECT_BIT_ZONES);
-    compare(VIT_EFFECT_BIT_ZONES | VIT_EFFECT_BIT_SEQUENCE);
+    compare(VIT_BIT(SEQUENCE));
+    compare(VIT_BIT(ZONES));
+    compare(VIT_BIT(ZONES) | VIT_BIT(SEQUENCE));
 }
 
 int main(void) {

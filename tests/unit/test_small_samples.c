@@ -39,7 +39,7 @@ static void points_make(points *p) {
 }
 
 static void run(points *p, unsigned lanes) {
-    lab l = lab_open(lanes, VIT_EFFECT_BIT_SMALL_SAMPLES, kernels);
+    lab l = lab_open(lanes, VIT_BIT(SMALL_SAMPLES), kernels);
     const cl_mem b[] = {lab_buffer(&l, &scene, sizeof scene),    lab_buffer(&l, p->in, sizeof p->in),
                         lab_buffer(&l, p->face, sizeof p->face), lab_buffer(&l, NULL, sizeof p->stored),
                         lab_buffer(&l, NULL, sizeof p->out),     lab_buffer(&l, NULL, sizeof p->gathered)};

@@ -70,13 +70,13 @@ static double expected(const image *m, vit_u32 effects, const float in[3], int k
     const double mantissa = 2 * frexp((double)in[2] * EDGE * EDGE, &exponent), lambda = (exponent - 1 + mantissa - 1) / 2;
     const double s = in[0], t = in[1];
     *near = 1;
-    if (effects & VIT_EFFECT_BIT_TRILINEAR) {
+    if (effects & VIT_BIT(TRILINEAR)) {
         const double level = fmin(fmax(lambda, 0), LEVELS - 1);
         const int fine = (int)level, coarse = fine + 1 < LEVELS ? fine + 1 : fine;
         return bilinear(m, fine, s, t, k) * (1 - (level - fine)) + bilinear(m, coarse, s, t, k) * (level - fine);
     }
     const int rounded = (int)fmin(fmax(floor(lambda + 0.5), 0), LEVELS - 1), size = EDGE >> rounded;
-    if (!(effects & VIT_EFFECT_BIT_NEAREST))
+    if (!(effects & VIT_BIT(NEAREST)))
         return bilinear(m, rounded, s, t, k);
     *near = fmin(fabs(s * size - round(s * size)), fabs(t * size - round(t * size)));
     return channel(texel(m, rounded, (int)(s * size), (int)(t * size)), k);
@@ -92,7 +92,7 @@ static void points_make(float in[3 * POINTS]) {
 }
 
 static void filter(const image *m, vit_u32 effects, unsigned lanes, const float *in, float *out) {
-    lab l = lab_open(lanes, VIT_EFFECT_BIT_TEXTURES | effects, kernels);
+    lab l = lab_open(lanes, VIT_BIT(TEXTURES) | effects, kernels);
     const size_t size = 3 * POINTS * sizeof(float);
     const cl_mem arguments[] = {lab_buffer(&l, &m->texture, sizeof m->texture), lab_buffer(&l, m->mips, sizeof m->mips),
                                 lab_buffer(&l, m->texels, sizeof m->texels), lab_buffer(&l, in, size),
@@ -127,7 +127,7 @@ static void check(vit_u32 effects) {
 
 static void nearest_takes_the_texel_under_the_point(void **state) {
     (void)state;
-    check(VIT_EFFECT_BIT_NEAREST);
+    check(VIT_BIT(NEAREST));
 }
 
 static void bilinear_blends_four_texels_of_the_nearest_level(void **state) {
@@ -137,7 +137,7 @@ static void bilinear_blends_four_texels_of_the_nearest_level(void **state) {
 
 static void trilinear_blends_two_levels(void **state) {
     (void)state;
-    check(VIT_EFFECT_BIT_TRILINEAR);
+    check(VIT_BIT(TRILINEAR));
 }
 
 int main(void) {

@@ -148,9 +148,9 @@ static void bake_model(bake *k) {
     k->s.quality.bounces = BOUNCES;
     k->s.quality.zones = k->s.quality.effective_area = k->whole;
     vit_status status = make_shape(k, &why);
-    if (status == VIT_OK && (k->p.scene.effects & VIT_EFFECT_BIT_PHOTONS))
+    if (status == VIT_OK && (k->p.scene.effects & VIT_BIT(PHOTONS)))
         status = make_photons(k, &why);
-    if (status == VIT_OK && k->whole && (k->p.scene.effects & VIT_EFFECT_BIT_PHOTONS))
+    if (status == VIT_OK && k->whole && (k->p.scene.effects & VIT_BIT(PHOTONS)))
         status = make_zones(k, &why);
     if (status == VIT_OK)
         check_pack(k);

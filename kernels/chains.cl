@@ -1,0 +1,85 @@
+/* Pass 2 with mirrors or glass: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
+ * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel part as
+ * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. A chain
+ * that does not end on a matt surface or in the sky is black. */
+#if VIT_WITH(CHAINS)
+/* Lanes whose triangle's material is a mirror or glass. */
+static inline li chain_goes_on(global const vit_attributes *attributes, global const vit_material *materials, li hit, li triangle)
+{
+    li r = L_I(0), own;
+    while (l_any(hit)) {
+        uint word = attributes[surface_next(&hit, triangle, &own)].material;
+        if (materials[word & VIT_MATERIAL_INDEX].kind != VIT_MATTE)
+            r |= own;
+    }
+    return r;
+}
+
+kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance, global float *rays,
+                   volatile global uint *split WORK_PARAMETERS)
+{
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n || round_skips(first, active))
+        return;
+    global const vit_camera *camera = cameras + frame;
+    li x, y, layer = L_I((int)(round % layers)), splits = L_I(0);
+    l_pixel(scene, first, &x, &y);
+    li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
+    lf t = L_LOAD(hit_distance + first), length = L_F(0);
+    lv3 o = lv3_load(camera->eye), d = l_camera_ray(scene, camera, round / layers, x, y), weight = lv3_set(L_F(1), L_F(1), L_F(1));
+    li going = chain_goes_on(attributes, materials, round_active(scene, first, x, y, active) & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
+    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
+    lf cone = L_F(vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
+    WORK_BEGIN
+    for (uint i = 0; i < scene->chain && l_any(going); i++) {
+        WORK_LANES(surface_points, going);
+        surface s = surface_at(SURFACE_SCENE, o, d, l_sel(going, t, L_F(1)), going, triangle, cone);
+        WORK_LANES(texture_fetches, s.textured);
+        li glass = VIT_EFFECT_GLASS ? going & L_NE(s.shine.kind, L_I((int)VIT_MIRROR)) : L_I(0);
+        lv3 next = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular, from = s.position;
+        if (VIT_EFFECT_GLASS && l_any(glass)) {
+            li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
+            shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
+            li forks = glass & ~splits & L_LT(p.mirror, L_F(1)), mirrored = glass & L_GT(p.mirror, L_F(0.5f));
+            mirrored = l_sel_i(forks, L_NE(layer, L_I(0)), mirrored);
+            lf part = l_sel(forks, l_sel(mirrored, p.mirror, 1.0f - p.mirror), L_F(1));
+            li through = glass & ~mirrored;
+            splits |= forks;
+            lv3 lost = lv3_set(shine_absorbed(s.shine.absorption.x, t), shine_absorbed(s.shine.absorption.y, t), shine_absorbed(s.shine.absorption.z, t));
+            weight = lv3_sel(inside, lv3_set(weight.x * lost.x, weight.y * lost.y, weight.z * lost.z), weight);
+            weight = lv3_scale(weight, l_sel(glass, part, L_F(1)));
+            next = lv3_sel(through, p.refracted, l_any(glass) ? lv3_sel(glass, p.mirrored, next) : next);
+            from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
+            tint = lv3_sel(glass & mirrored, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
+        }
+        weight = lv3_sel(going, lv3_set(weight.x * tint.x, weight.y * tint.y, weight.z * tint.z), weight);
+        length += l_sel(going, t, L_F(0));
+        o = lv3_sel(going, from, o);
+        d = lv3_sel(going, next, d);
+        lf reach = L_F(3e38f);
+        li found = L_I((int)VIT_NONE);
+        ray_packet r = ray_make(o, d);
+        WORK_LANES(chain_rays, going);
+        ray_nearest(RAY_SCENE, &r, going, &reach, &found);
+        WORK_TRACED(r);
+        t = l_sel(going, reach, t);
+        triangle = l_sel_i(going, found, triangle);
+        going = chain_goes_on(attributes, materials, going & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
+    }
+    /* What still goes on is black, and hits nothing. */
+    triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle);
+    weight = lv3_sel(going, lv3_set(L_F(0), L_F(0), L_F(0)), weight);
+    L_STORE(L_AS_UINT(triangle), hit_triangle + first);
+    L_STORE(t, hit_distance + first);
+    lv3_store_planes(o, rays, n, first);
+    lv3_store_planes(d, VIT_PLANE(rays, 3, n), n, first);
+    L_STORE(length + l_sel(L_NE(triangle, L_I((int)VIT_NONE)), t, L_F(0)), VIT_PLANE(rays, 6, n) + first);
+    lv3_store_planes(weight, VIT_PLANE(rays, 7, n), n, first);
+    if (VIT_EFFECT_GLASS && VIT_EFFECT_FILM && round % layers == 0) {
+        uint bits = l_bits(splits) << (first & 15u);
+        if (bits)
+            atomic_or(split + (first >> 4), bits);
+    }
+    WORK_END
+}
+#endif
