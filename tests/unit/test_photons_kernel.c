@@ -104,7 +104,7 @@ static cells some_cells(const room *r) {
 }
 
 /* effects: a texture filter, SEQUENCE, ZONES. */
-static void compare(uint32_t effects) {
+static void compare(uint64_t effects) {
     room *r = furnished_room();
     cells c = some_cells(r);
     r->in.effects = effects;
