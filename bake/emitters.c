@@ -63,7 +63,8 @@ typedef struct opening {
     float far; /* m */
 } opening;
 
-/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR. Mirrors and glass hand it on. */
+/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR; 0 where it is covered. Mirrors and glass
+ * hand it on. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     const photon_scene *s = &o->e->scene;
@@ -79,7 +80,10 @@ static void look_out(void *user, uint32_t i) {
         const float u = unit_float(seed * 0xa0f2ec75u), r = sqrtf(u), h = sqrtf(float_max(1.0f - u, 4e-4f));
         sincos_turn(unit_float(seed * 0x89e18285u), &sp, &cp);
         const vec3 d = vec3_unit(vec3_along(vec3_along(vec3_scale(n, h), ax, r * cp), ay, r * sp));
-        const uint32_t found = photon_rays_nearest(&o->rays, point_of(s, side, b), d, &t);
+        const vec3 from = point_of(s, side, b);
+        if (photon_rays_covered(&o->rays, side / 2, from, n))
+            continue;
+        const uint32_t found = photon_rays_nearest(&o->rays, from, d, &t);
         sum += found == VIT_NONE || side_material(s, 2 * found)->kind != VIT_MATTE || t > o->far ? 1.0 : (double)(t / o->far);
     }
     o->e->sum[i] = sum / o->tries;
@@ -98,18 +102,24 @@ static float diagonal(const photon_scene *s) {
     return sqrtf(vec3_dot(d, d));
 }
 
-/* From how open sides lie to the sum of their weights. */
+/* From how open sides lie to the sum of their weights; covered ones go. */
 static void sum_up(emitters *e) {
     double sum = 0;
+    uint32_t kept = 0;
     for (uint32_t i = 0; i < e->count; i++) {
         const vit_material *m = side_material(&e->scene, e->side[i]);
         const double area = side_area(&e->scene, e->side[i]);
+        const uint32_t side = e->side[i];
+        if (!(e->sum[i] > 0))
+            continue;
         sum += area * radiance_sum(m) * fmax(e->sum[i], OPEN_LEAST);
-        e->sum[i] = sum;
+        e->side[kept] = side;
+        e->sum[kept++] = sum;
         e->area += area;
         for (int k = 0; k < 3; k++)
             e->flux[k] += 3.14159265358979324 * area * (double)m->emission[k];
     }
+    e->count = kept;
 }
 
 vit_status emitters_find(const photon_scene *s, unsigned threads, emitters *out, vit_text *why) {
@@ -159,7 +169,7 @@ emitter_place emitters_place(const emitters *e, double x, double y) {
     const uint32_t side = e->side[low];
     float b[3];
     triangle_weights(fmin(fmax((at - before) / weight, 0.0), 1.0), y, b);
-    emitter_place p = {.position = point_of(&e->scene, side, b), .normal = side_normal(&e->scene, side)};
+    emitter_place p = {.position = point_of(&e->scene, side, b), .normal = side_normal(&e->scene, side), .triangle = side / 2};
     p.area = (float)(side_area(&e->scene, side) * total / weight);
     if (photon_opaque_place(&e->scene, side / 2, b))
         p.power = vec3_scale(vec3_load(side_material(&e->scene, side)->emission), p.area);
