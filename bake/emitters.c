@@ -176,16 +176,50 @@ emitter_place emitters_place(const emitters *e, double x, double y) {
     return p;
 }
 
+/* Sides that face alike, of six directions. */
+static int facing(vec3 n) {
+    const float x = fabsf(n.x), y = fabsf(n.y), z = fabsf(n.z);
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    return 2 * axis + ((axis == 0 ? n.x : axis == 1 ? n.y : n.z) < 0.0f);
+}
+
+/* What shines in each of the six directions, 1 W/sr summed over channels, is the same in every set and as much as it should be, so that
+ * pixels side by side do not differ because of a point more on this side of the lamp or that; if no set is without such points, and none of them may lie in a hole. */
+static void even_out(const emitters *e, uint32_t samples, vit_emitter *out) {
+    double whole[6] = {0}, found[VIT_PATTERNS][6] = {{0}};
+    for (uint32_t i = 0; i < e->count; i++) {
+        const vit_material *m = side_material(&e->scene, e->side[i]);
+        whole[facing(side_normal(&e->scene, e->side[i]))] += m->cutout ? -INFINITY : side_area(&e->scene, e->side[i]) * radiance_sum(m);
+    }
+    for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
+        const vit_emitter *p = out + i;
+        found[i / samples][facing(vec3_load(p->normal))] += (double)p->power[0] + (double)p->power[1] + (double)p->power[2];
+    }
+    for (int k = 0; k < 6; k++)
+        for (uint32_t set = 0; set < VIT_PATTERNS; set++)
+            if (!(found[set][k] > 0))
+                whole[k] = 0;
+    for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
+        const int k = facing(vec3_load(out[i].normal));
+        const float factor = whole[k] > 0 ? (float)(whole[k] / found[i / samples][k]) : 1.0f;
+        out[i].radius2 *= factor;
+        for (int c = 0; c < 3; c++)
+            out[i].power[c] *= factor;
+    }
+}
+
 void emitters_sets(const emitters *e, uint32_t samples, vit_emitter *out) {
+    vit_emitter *next = out;
     const float share = 1.0f / (float)samples;
     for (uint32_t set = 0; set < VIT_PATTERNS; set++)
         for (uint32_t i = 0; i < samples; i++) {
             double x, y;
             sobol_point(samples, set, i, &x, &y);
             const emitter_place p = emitters_place(e, x, y);
-            *out++ = (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
-                                   .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
-                                   .normal = {p.normal.x, p.normal.y, p.normal.z},
-                                   .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
+            *next++ = (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
+                                    .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
+                                    .normal = {p.normal.x, p.normal.y, p.normal.z},
+                                    .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
         }
+    even_out(e, samples, out);
 }
