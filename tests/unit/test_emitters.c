@@ -125,8 +125,8 @@ static void every_set_shines_as_much_as_the_lamps(void **state) {
             all += power * PI / VIT_PATTERNS;
         }
         close_to(all, e.flux[0], 1e-5);
-        if (counts[n] >= 16)
-            close_to(area, e.area, 0.02);
+        if (counts[n] >= 100)
+            close_to(area, e.area, 0.05);
         free(s);
     }
     emitters_free(&e);
