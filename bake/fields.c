@@ -122,9 +122,11 @@ static bool read_listed(const place *at, const config_setting_t *s, const field 
     else if (fits)
         (void)snprintf(text, sizeof text, "%s", config_setting_get_string(s));
     const int found = fits ? fields_place(f->allowed, text) : -1;
-    spell(f->allowed, number ? "" : "\"", allowed, sizeof allowed);
+    const char *quote = number ? "" : "\"";
+    spell(f->allowed, quote, allowed, sizeof allowed);
     if (found < 0)
-        return fields_fail(at, s, "'%s' must be %s%s%.64s", f->name, allowed, fits ? ", got " : "", text);
+        return fields_fail(at, s, "'%s' must be %s%s%s%.64s%s", f->name, allowed, fits ? ", got " : "", fits ? quote : "", text,
+                           fits ? quote : "");
     *out = number ? config_setting_get_int(s) : found;
     return true;
 }

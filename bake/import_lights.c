@@ -103,9 +103,16 @@ static bool make_light(bool gltf, const struct aiNode *node, const double world[
                        model_light *out) {
     static const struct aiVector3D origin = {0.0f, 0.0f, 0.0f};
     const float color[3] = {l->mColorDiffuse.r, l->mColorDiffuse.g, l->mColorDiffuse.b};
-    *out = (model_light){.spot = l->mType == aiLightSource_SPOT, .range = light_range(node), .direction = {0.0, -1.0, 0.0}};
+    const bool directional = l->mType == aiLightSource_DIRECTIONAL, spot = l->mType == aiLightSource_SPOT;
+    *out = (model_light){.kind = directional ? VIT_LIGHT_DIRECTIONAL
+                                 : spot      ? VIT_LIGHT_SPOT
+                                             : VIT_LIGHT_POINT,
+                         .direction = {0.0, -1.0, 0.0}};
+    out->range = directional ? 0.0 : light_range(node);
     transform_point(world, gltf ? &origin : &l->mPosition, out->position); /* as with cameras */
-    if (out->spot) {
+    if (directional && !transform_direction(world, &l->mDirection, out->direction))
+        return false;
+    if (spot) {
         out->inner = (double)l->mAngleInnerCone * 180.0 / PI;
         out->outer = (double)l->mAngleOuterCone * 180.0 / PI;
         if (!transform_direction(world, &l->mDirection, out->direction) || !(out->inner >= 0.0) ||
@@ -114,7 +121,7 @@ static bool make_light(bool gltf, const struct aiNode *node, const double world[
         out->outer = out->outer < 90.0 ? out->outer : 90.0;
     }
     for (int i = 0; i < 3; i++)
-        out->power[i] = 4.0 * PI * (double)color[i];
+        out->power[i] = (directional ? 1.0 : 4.0 * PI) * (double)color[i];
     return finite_point(out->position) && finite_point(out->power) && out->power[0] >= 0.0 && out->power[1] >= 0.0 &&
            out->power[2] >= 0.0;
 }
@@ -126,9 +133,9 @@ bool import_node_light(importer *im, const struct aiNode *node, const double wor
         model_light light;
         if (strcmp(l->mName.data, node->mName.data) != 0)
             continue;
-        if ((l->mType != aiLightSource_POINT && l->mType != aiLightSource_SPOT) ||
+        if ((l->mType != aiLightSource_POINT && l->mType != aiLightSource_SPOT && l->mType != aiLightSource_DIRECTIONAL) ||
             !make_light(im->gltf, node, world, l, &light)) {
-            import_warn(im, "light '%.100s' is neither a point nor a spot light; it is left out", l->mName.data);
+            import_warn(im, "light '%.100s' is no point, spot or directional light; it is left out", l->mName.data);
             continue;
         }
         (void)snprintf(light.name, sizeof light.name, "%.*s", SCENE_NAME - 1, l->mName.data);

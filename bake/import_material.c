@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#define DEFAULT_EXPONENT 50.0f /* of a lobe, and index of glass, where the scene file says neither */
+#define DEFAULT_IOR 1.5f
+
 /* Keys of Assimp's materials are macros of three arguments: key, type, index. */
 static bool get_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out,
                        unsigned count) {
@@ -132,6 +135,66 @@ static void read_alpha_other(importer *im, material_use *use, const struct aiMat
     }
 }
 
+/* A kind that the mesh did not have starts with that kind's defaults. */
+static void change_kind(model_material *m, int kind) {
+    const bool shines = kind != VIT_MATTE, glass = kind == VIT_GLASS || kind == VIT_THIN_GLASS,
+               was = m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS;
+    if (m->kind == (uint32_t)kind)
+        return;
+    for (int i = 0; i < 3; i++) {
+        if (!glass || !was)
+            m->specular[i] = shines ? 1.0f : 0.0f;
+        if (kind != VIT_GLASS)
+            m->absorption[i] = 0.0f;
+        if (shines)
+            m->emission[i] = 0.0f;
+    }
+    m->exponent = 1.0f;
+    m->ior = !glass ? 1.0f : was ? m->ior : DEFAULT_IOR;
+    m->kind = (uint32_t)kind;
+}
+
+static void override_shine(importer *im, model_material *m, const scene_material *o) {
+    if (o->has_kind)
+        change_kind(m, o->kind);
+    const bool glass = m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS, matt = m->kind == VIT_MATTE;
+    const bool lobe = m->specular[0] > 0 || m->specular[1] > 0 || m->specular[2] > 0;
+    for (int i = 0; i < 3 && o->has_specular; i++)
+        m->specular[i] = (float)o->specular[i];
+    for (int i = 0; i < 3 && o->has_absorption && m->kind == VIT_GLASS; i++)
+        m->absorption[i] = (float)o->absorption[i];
+    if (o->has_exponent && matt)
+        m->exponent = (float)o->exponent;
+    else if (o->has_specular && matt && !lobe)
+        m->exponent = DEFAULT_EXPONENT;
+    if (o->has_ior && glass)
+        m->ior = (float)o->ior;
+    /* A kind that the scene file states has been checked there. */
+    if ((o->has_ior && !glass) || (o->has_absorption && m->kind != VIT_GLASS) ||
+        ((o->has_color || o->has_emission || o->has_exponent) && !matt))
+        import_warn(im, "line %d: material '%.100s': a setting does nothing for the kind of material that the mesh makes it",
+                    o->line, o->name);
+}
+
+/* What a material must hold whatever it is made from: no more reflected than arrives, and nothing that its kind has no use for.
+ */
+static void settle_shine(model_material *m) {
+    float most = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        if (m->kind != VIT_MATTE)
+            m->albedo[i] = m->emission[i] = 0.0f;
+        most = fmaxf(most, m->albedo[i] + m->specular[i]);
+    }
+    const bool lobe = m->specular[0] > 0 || m->specular[1] > 0 || m->specular[2] > 0;
+    if (m->kind != VIT_MATTE || !lobe)
+        m->exponent = 1.0f;
+    else if (most > 1.0f)
+        for (int i = 0; i < 3; i++) { /* hues stay; rounded down */
+            m->albedo[i] *= (1.0f - 0x1p-22f) / most;
+            m->specular[i] *= (1.0f - 0x1p-22f) / most;
+        }
+}
+
 /* What the scene file says beats what the mesh says. */
 static void apply_override(importer *im, material_use *use) {
     for (int i = 0; i < im->s->material_count; i++) {
@@ -143,6 +206,9 @@ static void apply_override(importer *im, material_use *use) {
             use->m.albedo[k] = clamp((float)o->color[k], VIT_MAX_ALBEDO);
         for (int k = 0; k < 3 && o->has_emission; k++)
             use->m.emission[k] = (float)o->emission[k];
+        override_shine(im, &use->m, o);
+        if (o->has_area_light)
+            use->m.area_light = o->area_light;
         if (o->has_cutoff)
             use->m.cutoff = (float)o->cutoff;
         if (o->has_texture) {
@@ -164,7 +230,9 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
     if (!import_room(im, &im->uses, &im->use_room, im->use_count + 1, sizeof *im->uses))
         return false;
     *use = &im->uses[im->use_count++];
-    **use = (material_use){.ai_index = ai_index, .index = -1, .m = {.image = -1, .alpha = 1.0f}};
+    **use = (material_use){.ai_index = ai_index,
+                           .index = -1,
+                           .m = {.image = -1, .alpha = 1.0f, .exponent = 1.0f, .ior = 1.0f, .area_light = true}};
     memcpy((*use)->tint, tint, sizeof(*use)->tint);
     const struct aiMaterial *ai = im->ai->mMaterials[ai_index];
     struct aiString name = {.length = 0};
@@ -178,6 +246,7 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
     else
         read_alpha_other(im, *use, ai);
     apply_override(im, *use);
+    settle_shine(&(*use)->m);
     /* The texture's alpha is at most 1: below the cutoff without it, below with it. */
     (*use)->hole = (*use)->m.alpha < (*use)->m.cutoff;
     return true;

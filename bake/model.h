@@ -14,6 +14,12 @@ typedef struct model_material {
     char name[SCENE_NAME];
     float albedo[3];           /* linear, multiplies the texture; finite, clamped to 0..VIT_MAX_ALBEDO */
     float emission[3];         /* W/(m2 sr), finite, >= 0 */
+    uint32_t kind;             /* VIT_MATTE, ...; mirrors and glass have no albedo and do not emit */
+    float specular[3];         /* as in vit_material; VIT_MATTE: albedo + specular <= 1 */
+    float exponent;            /* 1..VIT_MAX_EXPONENT; 1 without a lobe */
+    float ior;                 /* VIT_MIN_IOR..VIT_MAX_IOR; 1 unless glass */
+    float absorption[3];       /* 1/m, finite, >= 0; 0 unless VIT_GLASS */
+    bool area_light;           /* what it emits lights others */
     int image;                 /* index in model.images, -1 if none */
     uint32_t wrap_u, wrap_v;   /* VIT_WRAP_* */
     float cutoff;              /* alpha test: texels with alpha * factor < cutoff are holes; 0: opaque */
@@ -28,8 +34,9 @@ typedef struct model_camera {
 
 typedef struct model_light {
     char name[SCENE_NAME];
-    bool spot;
-    double position[3], direction[3], power[3], inner, outer; /* world space; degrees from the axis; W, glTF candela taken as W/sr */
+    int kind;                  /* VIT_LIGHT_* */
+    double position[3], direction[3], power[3], inner, outer; /* world space; degrees from the axis; W, glTF candela taken as W/sr;
+                                                               * directional: irradiance, W/m2, glTF lux taken as it */
     double range;
 } model_light;
 

@@ -1,4 +1,5 @@
 #include "planner.h"
+#include "copies.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,12 +19,14 @@ static bool gives_photons(const scene *s, uint32_t light) {
     return s->automatic || s->lights[light].photons;
 }
 
-/* Mean power over the path, W summed over channels: what a light's share of the paths follows. */
+/* Mean power over the path, 2 pi W summed over channels: what a light's share of the paths follows. */
 static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
     double sum = 0;
     for (uint32_t f = 0; f < frames; f++) {
         const vit_light *l = &t->lights[(size_t)f * t->light_count + light];
-        sum += ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) * (1.0 - (double)l->cos_outer);
+        const double disc = 0.5 * (double)l->spot_scale * (double)l->spot_scale; /* pi R^2 where others have 2 pi (1 - cos) */
+        sum += ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) *
+               (l->kind == VIT_LIGHT_DIRECTIONAL ? disc : 1.0 - (double)l->cos_outer);
     }
     return sum / frames;
 }
@@ -59,6 +62,10 @@ static vit_status share_paths(const scene *s, tracks *t, plan *p, vit_text *why)
     return VIT_OK;
 }
 
+static bool is_positive(const float c[3]) {
+    return c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
 static void plan_materials(const model *m, const atlas *a, plan *p) {
     for (int i = 0; i < m->material_count; i++) {
         const model_material *from = &m->materials[i];
@@ -67,7 +74,12 @@ static void plan_materials(const model *m, const atlas *a, plan *p) {
         memcpy(to->emission, from->emission, sizeof to->emission);
         to->texture = a->material_texture ? a->material_texture[i] : VIT_NONE;
         to->cutout = from->cutoff > 0 && to->texture != VIT_NONE;
-        to->exponent = to->ior = 1.0f;
+        memcpy(to->specular, from->specular, sizeof to->specular);
+        memcpy(to->absorption, from->absorption, sizeof to->absorption);
+        to->kind = from->kind;
+        to->exponent = from->exponent;
+        to->ior = from->ior;
+        to->lights = from->area_light && is_positive(from->emission);
     }
 }
 
@@ -77,6 +89,8 @@ static uint64_t effects_of_lights(const scene *s, const tracks *t) {
         const vit_light *l = &t->lights[i];
         if (l->kind == VIT_LIGHT_SPOT)
             e |= VIT_BIT(SPOT);
+        if (l->kind == VIT_LIGHT_DIRECTIONAL)
+            e |= VIT_BIT(DIRECTIONAL);
         if (l->inv_range2 > 0 || l->falloff == VIT_FALLOFF_WINDOW)
             e |= VIT_BIT(RANGE);
     }
@@ -94,8 +108,14 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
             e |= VIT_BIT(TEXTURES) | filter;
         if (v->cutout)
             e |= VIT_BIT(CUTOUT);
-        if (v->emission[0] > 0 || v->emission[1] > 0 || v->emission[2] > 0)
+        if (is_positive(v->emission))
             e |= VIT_BIT(EMISSION);
+        if (v->kind == VIT_MATTE && is_positive(v->specular))
+            e |= VIT_BIT(GLOSS);
+        if (v->kind == VIT_MIRROR)
+            e |= VIT_BIT(MIRROR);
+        if (v->kind == VIT_GLASS || v->kind == VIT_THIN_GLASS)
+            e |= VIT_BIT(GLASS);
     }
     return e;
 }
@@ -173,15 +193,27 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     c->slice_near = (float)t->near;
     c->slice_scale = slice_scale(s, t);
     c->slice_count = 4096;
-    c->copies = 1;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
         c->background[k] = (float)s->background[k];
+        c->ambient[k] = (float)s->ambient[k];
+    }
+    c->copies = (uint32_t)s->quality.antialias;
+    if (c->copies > 1)
+        c->contrast = (float)s->quality.antialias_contrast;
+    copies_place(c->copies, s->quality.tent, c->offset);
     vit_status status = share_paths(s, t, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;
     }
     c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
+    c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
+    c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
+    if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
+        c->chain = (uint32_t)s->quality.specular_depth;
+        c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
+    }
+    /* AREA_LIGHTS, SKY_IMAGE, SKY_LIGHT, and area_samples, sky_samples, sky_size: set with the sections EMIT and SKYT. */
     if (s->quality.sample_bits == 16) {
         c->effects |= VIT_BIT(SMALL_SAMPLES);
         plan_grid(m, c);

@@ -14,6 +14,8 @@ enum {
 static const field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
     {"background", FIELD_VECTOR, offsetof(scene, background), RADIOMETRIC},
+    {"ambient", FIELD_VECTOR, offsetof(scene, ambient), RADIOMETRIC},
+    {"sky", FIELD_OTHER, 0, NULL},
     {"output", FIELD_OTHER, 0, NULL},
     {"meshes", FIELD_OTHER, 0, NULL},
     {"camera", FIELD_OTHER, 0, NULL},
@@ -27,6 +29,14 @@ static const field output_fields[] = {
     {"height", FIELD_WHOLE, offsetof(scene, height), "[1, 4320]"},
     {"fps", FIELD_NUMBER, offsetof(scene, fps), "(0, 1000]"},
     {"frames", FIELD_WHOLE, offsetof(scene, frames), "[1, 100000]"},
+};
+
+enum { SKY_IMAGE, SKY_SCALE, SKY_ROTATE, SKY_LIGHT };
+static const field sky_fields[] = {
+    [SKY_IMAGE] = {"image", FIELD_PATH, offsetof(scene_sky, image), NULL},
+    [SKY_SCALE] = {"scale", FIELD_NUMBER, offsetof(scene_sky, scale), "[0, 1e6]"},
+    [SKY_ROTATE] = {"rotate", FIELD_NUMBER, offsetof(scene_sky, rotate), "[-360, 360]"},
+    [SKY_LIGHT] = {"light", FIELD_SWITCH, offsetof(scene_sky, light), NULL},
 };
 
 typedef struct quality_group {
@@ -54,6 +64,13 @@ static const field quality_fields[] = {
     {"vertex_bits", FIELD_AMONG, offsetof(quality_group, q.vertex_bits), SCENE_VERTEX_BITS},
     {"normal_bits", FIELD_AMONG, offsetof(quality_group, q.normal_bits), SCENE_NORMAL_BITS},
     {"sample_bits", FIELD_AMONG, offsetof(quality_group, q.sample_bits), SCENE_SAMPLE_BITS},
+    {"antialias", FIELD_AMONG, offsetof(quality_group, q.antialias), SCENE_ANTIALIAS},
+    {"antialias_contrast", FIELD_NUMBER, offsetof(quality_group, q.antialias_contrast), "[0, 1]"},
+    {"antialias_filter", FIELD_CHOICE, offsetof(quality_group, q.tent), "box|tent"},
+    {"light_samples", FIELD_WHOLE, offsetof(quality_group, q.light_samples), "[1, 1024]"},
+    {"sky_samples", FIELD_WHOLE, offsetof(quality_group, q.sky_samples), "[1, 1024]"},
+    {"specular_depth", FIELD_WHOLE, offsetof(quality_group, q.specular_depth), "[1, 32]"},
+    {"caustics", FIELD_SWITCH, offsetof(quality_group, q.caustics), NULL},
 };
 
 void reader_at(reader *r, const char *group, int index) {
@@ -76,6 +93,25 @@ static bool read_output(reader *r, const config_setting_t *root) {
     uint32_t seen;
     reader_at(r, "output", -1);
     return !group || fields_read(&r->at, group, output_fields, FIELD_COUNT(output_fields), r->s, &seen);
+}
+
+static bool read_sky(reader *r, const config_setting_t *root) {
+    const config_setting_t *group = config_setting_get_member(root, "sky");
+    scene *s = r->s;
+    scene_sky *sky = &s->sky;
+    uint32_t seen;
+    reader_at(r, "sky", -1);
+    if (!group)
+        return true;
+    if (!fields_read(&r->at, group, sky_fields, FIELD_COUNT(sky_fields), sky, &seen))
+        return false;
+    if (!sky->image[0] && (seen & (FIELD_BIT(SKY_SCALE) | FIELD_BIT(SKY_ROTATE))))
+        return fields_fail(&r->at, group, "'scale' and 'rotate' are for an 'image'");
+    if (!(seen & FIELD_BIT(SKY_LIGHT)))
+        sky->light = sky->image[0] != '\0';
+    if (sky->light && !sky->image[0] && !(s->background[0] > 0 || s->background[1] > 0 || s->background[2] > 0))
+        return fields_fail(&r->at, group, "'light' needs an 'image', or a 'background' that is not black");
+    return true;
 }
 
 /* Puts the group's settings over *q. */
@@ -213,12 +249,12 @@ static bool parse(const place *at, config_t *config) {
 static bool read_top(reader *r, const config_setting_t *root) {
     uint32_t seen;
     return fields_read(&r->at, root, top_fields, FIELD_COUNT(top_fields), r->s, &seen) && read_output(r, root) &&
-           reader_meshes(r, root) && reader_camera(r, root) && reader_lights(r, root) && reader_materials(r, root) &&
-           read_quality(r, root);
+           read_sky(r, root) && reader_meshes(r, root) && reader_camera(r, root) && reader_lights(r, root) &&
+           reader_materials(r, root) && read_quality(r, root);
 }
 
 static void set_defaults(scene *s) {
-    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0};
+    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .sky = {.scale = 1.0}};
     s->quality = (scene_quality){.photons = 17000,
                                  .bounces = 4,
                                  .tile = 32,
@@ -226,7 +262,13 @@ static void set_defaults(scene *s) {
                                  .texture_filter = FILTER_BILINEAR,
                                  .vertex_bits = 32,
                                  .normal_bits = 16,
-                                 .sample_bits = 32};
+                                 .sample_bits = 32,
+                                 .antialias = 1,
+                                 .antialias_contrast = 0.06,
+                                 .light_samples = 16,
+                                 .sky_samples = 16,
+                                 .specular_depth = 8,
+                                 .caustics = true};
 }
 
 static vit_status copy_path(scene *s, const char *path, vit_text *why) {

@@ -25,12 +25,15 @@ typedef struct scene_camera_key {
 typedef struct scene_light_key {
     double time;
     double position[3];
-    double target[3];          /* spot lights look at it */
-    double power[3];           /* W a channel, radiated into the whole sphere (a spot light's cone cuts a part out of it) */
+    double target[3];          /* spot and directional lights look at it */
+    double power[3];           /* W a channel, radiated into the whole sphere (a spot light's cone cuts a part out of it); of a directional
+                                * light irradiance across it, W/m2 */
 } scene_light_key;
 
+#define SCENE_LIGHT_KINDS "point|spot|directional" /* VIT_LIGHT_* in this order */
+
 typedef struct scene_light {
-    bool spot;
+    int kind;                  /* VIT_LIGHT_* */
     double inner, outer;       /* degrees from the axis, spot lights */
     double range;              /* metres; 0: none */
     bool window;               /* VIT_FALLOFF_WINDOW */
@@ -41,14 +44,27 @@ typedef struct scene_light {
     int line;
 } scene_light;
 
+#define SCENE_MATERIAL_KINDS "matt|mirror|glass|thin_glass" /* VIT_MATTE and so on, in this order */
+
 /* Overrides of the material called `name`; has_* say which. */
 typedef struct scene_material {
     char name[SCENE_NAME];
-    bool has_color, has_texture, has_emission, has_cutoff;
+    bool has_color, has_texture, has_emission, has_cutoff, has_kind, has_specular, has_exponent, has_ior, has_absorption, has_area_light;
     double color[3], emission[3], cutoff;
+    int kind;                  /* VIT_MATTE, ... */
+    double specular[3], exponent, ior, absorption[3]; /* as vit_material */
+    bool area_light;           /* what it emits lights others */
     char texture[SCENE_PATH];  /* resolved; "" removes the texture */
     int line;
 } scene_material;
+
+/* What is round the scene, besides its background. */
+typedef struct scene_sky {
+    char image[SCENE_PATH];    /* equirectangular, resolved; "": the background is the sky */
+    double scale;              /* factor on the image's values, which are W/(m2 sr) then */
+    double rotate;             /* degrees about y */
+    bool light;                /* the sky lights the scene */
+} scene_sky;
 
 /* Values of settings that take one of a few. */
 #define SCENE_INDIRECT_SAMPLES "1|4|16"
@@ -56,6 +72,7 @@ typedef struct scene_material {
 #define SCENE_NORMAL_BITS "16|8"
 #define SCENE_SAMPLE_BITS "32|16"
 #define SCENE_FILTERS "nearest|bilinear|trilinear"
+#define SCENE_ANTIALIAS "1|2|4|8|16"
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
 
 typedef struct scene_quality {
@@ -76,6 +93,13 @@ typedef struct scene_quality {
     int vertex_bits;           /* 32, or 16: positions on a grid of the scene's box (quantise.h) */
     int normal_bits;           /* 16, or 8: of each octahedral component of a vertex normal */
     int sample_bits;           /* 32 or 16: of each coordinate of a view sample's position */
+    int antialias;             /* samples a pixel: 1, 2, 4, 8 or 16 */
+    double antialias_contrast; /* 0..1; 0: all pixels take all of them */
+    bool tent;                 /* antialias_filter: box (false) or tent */
+    int light_samples;         /* points on area lights that a view sample looks at, 1..1024 */
+    int sky_samples;           /* directions to the sky, likewise */
+    int specular_depth;        /* reflections and refractions of a view ray, 1..32 */
+    bool caustics;             /* photon paths go on from mirrors and glass */
 } scene_quality;
 
 typedef struct scene {
@@ -84,6 +108,8 @@ typedef struct scene {
     int width, height, frames;
     double fps;
     double background[3];      /* W/(m2 sr) */
+    double ambient[3];         /* radiance of white matt surfaces in no other light, W/(m2 sr) */
+    scene_sky sky;
     scene_mesh *meshes;
     int mesh_count;
     char camera_use[SCENE_NAME]; /* name of a glTF camera that gives eye, target, up, fov; "" if none */
@@ -105,7 +131,7 @@ vit_status scene_read(const char *path, scene *out, vit_text *why);
 vit_status scene_for_mesh(const char *path, scene *out, vit_text *why);
 void scene_free(scene *s);
 
-#define SCENE_QUALITY 512 /* bytes that a quality block takes as text */
+#define SCENE_QUALITY 1024 /* bytes that a quality block takes as text */
 /* Puts settings as a quality block holds them, "photons = 4000; radius = \"auto\";", over *q. VIT_BAD_INPUT, and *q is as it was. */
 vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why);
 /* All settings of *q in that form, in one line: applied to any block it gives *q again. */

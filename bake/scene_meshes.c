@@ -1,4 +1,5 @@
 #include "scene_reader.h"
+#include "vitrine_pack.h"
 #include <math.h>
 #include <string.h>
 
@@ -87,14 +88,49 @@ bool reader_meshes(reader *r, const config_setting_t *root) {
     return true;
 }
 
-enum { MATERIAL_NAME, MATERIAL_COLOR, MATERIAL_TEXTURE, MATERIAL_EMISSION, MATERIAL_CUTOFF };
+enum {
+    MATERIAL_NAME,
+    MATERIAL_COLOR,
+    MATERIAL_TEXTURE,
+    MATERIAL_EMISSION,
+    MATERIAL_CUTOFF,
+    MATERIAL_KIND,
+    MATERIAL_SPECULAR,
+    MATERIAL_EXPONENT,
+    MATERIAL_IOR,
+    MATERIAL_ABSORPTION,
+    MATERIAL_AREA_LIGHT
+};
 static const field material_fields[] = {
     [MATERIAL_NAME] = {"name", FIELD_TEXT, offsetof(scene_material, name), NULL},
     [MATERIAL_COLOR] = {"color", FIELD_VECTOR, offsetof(scene_material, color), "[0, 1]"},
     [MATERIAL_TEXTURE] = {"texture", FIELD_PATH, offsetof(scene_material, texture), NULL},
     [MATERIAL_EMISSION] = {"emission", FIELD_VECTOR, offsetof(scene_material, emission), RADIOMETRIC},
     [MATERIAL_CUTOFF] = {"cutoff", FIELD_NUMBER, offsetof(scene_material, cutoff), "[0, 1]"},
+    [MATERIAL_KIND] = {"kind", FIELD_WORD, offsetof(scene_material, kind), SCENE_MATERIAL_KINDS},
+    [MATERIAL_SPECULAR] = {"specular", FIELD_VECTOR, offsetof(scene_material, specular), "[0, 1]"},
+    [MATERIAL_EXPONENT] = {"exponent", FIELD_NUMBER, offsetof(scene_material, exponent), "[1, 1e4]"},
+    [MATERIAL_IOR] = {"ior", FIELD_NUMBER, offsetof(scene_material, ior), "[1, 10]"},
+    [MATERIAL_ABSORPTION] = {"absorption", FIELD_VECTOR, offsetof(scene_material, absorption), RADIOMETRIC},
+    [MATERIAL_AREA_LIGHT] = {"area_light", FIELD_SWITCH, offsetof(scene_material, area_light), NULL},
 };
+
+/* Settings that a material of the kind that it states has no use for. */
+static bool check_material(const place *at, const config_setting_t *group, const scene_material *m, uint32_t seen) {
+    static const struct {
+        int setting;
+        uint32_t kinds; /* a bit a kind that has it */
+    } rules[] = {{MATERIAL_COLOR, 1u << VIT_MATTE},
+                 {MATERIAL_EMISSION, 1u << VIT_MATTE},
+                 {MATERIAL_EXPONENT, 1u << VIT_MATTE},
+                 {MATERIAL_AREA_LIGHT, 1u << VIT_MATTE},
+                 {MATERIAL_IOR, 1u << VIT_GLASS | 1u << VIT_THIN_GLASS},
+                 {MATERIAL_ABSORPTION, 1u << VIT_GLASS}};
+    for (size_t i = 0; (seen & FIELD_BIT(MATERIAL_KIND)) && i < sizeof rules / sizeof *rules; i++)
+        if ((seen & FIELD_BIT(rules[i].setting)) && !(rules[i].kinds & 1u << m->kind))
+            return fields_fail(at, group, "'%s' does nothing for this 'kind'", material_fields[rules[i].setting].name);
+    return true;
+}
 
 bool reader_materials(reader *r, const config_setting_t *root) {
     config_setting_t *list, *group;
@@ -119,7 +155,15 @@ bool reader_materials(reader *r, const config_setting_t *root) {
         material->has_color = seen & FIELD_BIT(MATERIAL_COLOR);
         material->has_texture = seen & FIELD_BIT(MATERIAL_TEXTURE);
         material->has_emission = seen & FIELD_BIT(MATERIAL_EMISSION);
+        if (!check_material(&r->at, group, material, seen))
+            return false;
         material->has_cutoff = seen & FIELD_BIT(MATERIAL_CUTOFF);
+        material->has_kind = seen & FIELD_BIT(MATERIAL_KIND);
+        material->has_specular = seen & FIELD_BIT(MATERIAL_SPECULAR);
+        material->has_exponent = seen & FIELD_BIT(MATERIAL_EXPONENT);
+        material->has_ior = seen & FIELD_BIT(MATERIAL_IOR);
+        material->has_absorption = seen & FIELD_BIT(MATERIAL_ABSORPTION);
+        material->has_area_light = seen & FIELD_BIT(MATERIAL_AREA_LIGHT);
         material->line = (int)config_setting_source_line(group);
         r->s->material_count = i + 1;
     }

@@ -227,21 +227,38 @@ static bool light_curves(const scene_light *light, curves *c) {
     return true;
 }
 
-/* False: a spot light that looks at itself. */
-static bool make_light(const scene_light *light, const scene_light_key *key, vit_light *out) {
+/* Parallel light leaves a disc outside the model, as large as the model's bounding sphere. */
+static void place_disc(const model *m, const double direction[3], vit_light *out) {
+    double center[3];
+    const double radius = box_center(m, center) * 1.001; /* all of the sphere, however directions and planes are rounded */
+    *out = (vit_light){.kind = VIT_LIGHT_DIRECTIONAL, .cos_outer = 1.0f, .spot_scale = (float)radius};
+    for (int i = 0; i < 3; i++)
+        out->position[i] = (float)(center[i] - direction[i] * radius);
+}
+
+/* False: a light that looks at itself. */
+static bool make_light(const model *m, const scene_light *light, const scene_light_key *key, vit_light *out) {
     double direction[3] = {0.0, -1.0, 0.0}; /* of no use to a point light, but a unit vector */
+    for (int i = 0; i < 3 && light->kind != VIT_LIGHT_POINT; i++)
+        direction[i] = key->target[i] - key->position[i];
+    if (!normalize(direction))
+        return false;
+    if (light->kind == VIT_LIGHT_DIRECTIONAL) {
+        place_disc(m, direction, out);
+        for (int i = 0; i < 3; i++) {
+            out->direction[i] = (float)direction[i];
+            out->intensity[i] = (float)key->power[i];
+        }
+        return true;
+    }
     *out = (vit_light){.kind = VIT_LIGHT_POINT, .cos_outer = -1.0f, .spot_offset = 1.0f};
     out->falloff = light->window ? VIT_FALLOFF_WINDOW : VIT_FALLOFF_INVERSE_SQUARE;
     if (light->range > 0.0)
         out->inv_range2 = (float)(1.0 / (light->range * light->range));
-    if (light->spot) {
+    if (light->kind == VIT_LIGHT_SPOT) {
         const double inner = cos(light->inner * PI / 180.0);
         const double outer = light->outer < 90.0 ? cos(light->outer * PI / 180.0) : 0.0;
         const double scale = 1.0 / fmax(0.001, inner - outer); /* KHR_lights_punctual */
-        for (int i = 0; i < 3; i++)
-            direction[i] = key->target[i] - key->position[i];
-        if (!normalize(direction))
-            return false;
         out->kind = VIT_LIGHT_SPOT;
         out->cos_outer = (float)outer;
         out->spot_scale = (float)scale;
@@ -262,7 +279,7 @@ static bool used_light(const model *m, const scene_light *wish, scene_light *lig
         if (strcmp(l->name, wish->use) != 0)
             continue;
         *light = *wish;
-        light->spot = l->spot;
+        light->kind = l->kind;
         light->inner = l->inner;
         light->outer = l->outer;
         light->range = wish->range > 0.0 ? wish->range : l->range;
@@ -280,12 +297,15 @@ static bool used_light(const model *m, const scene_light *wish, scene_light *lig
 /* One light, all frames. */
 static vit_status make_track(const scene *s, const model *m, int index, tracks *out, vit_text *why) {
     /* From 1.94 radii away, 31 degrees hold the whole model: no photon is wasted on the void round it. */
-    static const scene_light lamp = {.spot = true, .inner = 31.0, .outer = 33.0, .photons = true};
+    static const scene_light lamp = {.kind = VIT_LIGHT_SPOT, .inner = 31.0, .outer = 33.0, .photons = true};
     scene_light light = s->automatic ? lamp : s->lights[index];
     scene_light_key key = {0};
     curves path = {0};
     if (light.use[0] && !used_light(m, &s->lights[index], &light, &key))
-        return refuse(s, light.line, why, "light %d: no mesh has a point or spot light '%.100s'", index + 1, light.use);
+        return refuse(s, light.line, why, "light %d: no mesh has a point, spot or directional light '%.100s'", index + 1,
+                      light.use);
+    if (light.kind == VIT_LIGHT_DIRECTIONAL && (light.window || s->lights[index].range > 0.0))
+        return refuse(s, light.line, why, "light %d: 'range' and 'falloff' are for point and spot lights", index + 1);
     if (light.window && !(light.range > 0.0))
         return refuse(s, light.line, why, "light %d: falloff \"window\" needs a 'range'", index + 1);
     if (!light.use[0] && !s->automatic && !light_curves(&light, &path)) {
@@ -305,7 +325,7 @@ static vit_status make_track(const scene *s, const model *m, int index, tracks *
             memcpy(key.target, value + 3, sizeof key.target);
             memcpy(key.power, value + 6, sizeof key.power);
         }
-        if (!make_light(&light, &key, record))
+        if (!make_light(m, &light, &key, record))
             status = refuse(s, light.line, why, "light %d: 'position' and 'target' meet in frame %d", index + 1, f);
         if (memcmp(record, &out->lights[index], sizeof *record) != 0)
             out->still[index] = false;

@@ -16,6 +16,7 @@ typedef struct tracks {
 
 /* Evaluates the path at times frame / fps. Positions, targets, power, fov and exposure follow monotone (Fritsch-Carlson)
  * cubics through the keys a component, constant before the first and after the last. Resolves `use` names against the model.
+ * Directional lights get the disc round the model that their photons leave (vit_light).
  * A scene that is `automatic` gets a camera that turns once round the model's box, seeing all of it, and one moving light. */
 vit_status tracks_evaluate(const scene *s, const model *m, tracks *out, vit_text *why);
 void tracks_free(tracks *t);

@@ -109,12 +109,15 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
 static int build_options(char *text, size_t size, const vit_limits *l, int wide_divide) {
     int n = snprintf(text, size,
                      "-cl-std=CL1.2 %s -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
-                     "-DVIT_EFFECT_DOTS=%d -DVIT_EFFECT_FILM=%d -DVIT_EFFECT_CHAINS=%d -DVIT_COUNT_WORK=%d",
+                     "-DVIT_COUNT_WORK=%d",
                      wide_divide ? "-DVIT_WIDE_DIVIDE" : "-cl-fp32-correctly-rounded-divide-sqrt", l->lanes, (int)l->view,
-                     (int)l->format, (l->effects & ON_DOTS) != 0, (l->effects & ON_FILM) != 0, (l->effects & ON_CHAINS) != 0, (l->effects & ON_WORK) != 0);
+                     (int)l->format, (l->effects & ON_WORK) != 0);
 #define X(bit, name, macro, why)                                                                                               \
     n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (int)(l->effects >> bit & 1));
     VIT_EFFECTS(X)
+#undef X
+#define X(macro) n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (l->effects & ON_##macro) != 0);
+    VIT_MODES(X)
 #undef X
     return n < (int)size;
 }

@@ -9,11 +9,12 @@ echo 'extern constant int vit_any;' > "$tmp/all.cl"
 cat "$@" | sed -e 's/^#define VIT_WITH(effect) .*/#define VIT_WITH(effect) 1/' -e 's/^#define VIT_WITH_DENSE .*/#define VIT_WITH_DENSE 1/' >> "$tmp/all.cl"
 [ "$(grep -c '^#define VIT_WITH.* 1$' "$tmp/all.cl")" = 2 ] || { echo "kernels/strict.clh defines VIT_WITH otherwise than this script knows"; exit 1; }
 effects=$(sed -n '/define VIT_EFFECTS/,/[^\\]$/s/.*X([0-9]*, "[^"]*", \([A-Z0-9_]*\).*/\1/p' kernels/records.clh)
+modes=$(sed -n 's/.*define VIT_MODES(X) //p' kernels/records.clh | tr -d 'X()')
 wrong() { # program: lines of its text that divide floats
     for lanes in 1 8; do
         clang -x cl -cl-std=CL1.2 -D__OPENCL_VERSION__=120 -Xclang -finclude-default-header -target spir64 -O0 -gline-tables-only -S -emit-llvm -w \
-            -DVIT_WIDE_DIVIDE -DVIT_LANES=$lanes -DVIT_VIEW=vit_any -DVIT_FORMAT=vit_any -DVIT_EFFECT_DOTS=vit_any -DVIT_COUNT_WORK=1 \
-            $(for e in $effects; do echo "-DVIT_EFFECT_$e=vit_any"; done) "$1" -o "$tmp/all.ll"
+            -DVIT_WIDE_DIVIDE -DVIT_LANES=$lanes -DVIT_VIEW=vit_any -DVIT_FORMAT=vit_any -DVIT_COUNT_WORK=1 \
+            $(for e in $effects $modes; do echo "-DVIT_EFFECT_$e=vit_any"; done) "$1" -o "$tmp/all.ll"
         grep -q 'fdiv .*double' "$tmp/all.ll" || echo none
         grep -E 'fdiv (<[0-9]+ x )?float|call .*@_Z[0-9]+(native_|half_|r)?sqrt(f|Dv[0-9]+_f)\(' "$tmp/all.ll" | sed -E 's/.*!dbg (![0-9]+).*/\1/' |
             while read -r at; do sed -n "s/^$at = !DILocation(line: \([0-9]*\),.*/\1/p" "$tmp/all.ll"; done

@@ -7,7 +7,10 @@ _Static_assert(VIT_LANES == HOST_LAB_LANES, "as the header says");
 #define X(bit, name, macro, why) static const uint VIT_EFFECT_##macro = 0;
 VIT_EFFECTS(X)
 #undef X
-static const uint VIT_EFFECT_DOTS = 0, VIT_VIEW = 0, VIT_FORMAT = 0;
+#define X(macro) static const uint VIT_EFFECT_##macro = 0;
+VIT_MODES(X)
+#undef X
+static const uint VIT_VIEW = 0, VIT_FORMAT = 0;
 #define VIT_WITH(effect) 1
 #define VIT_WITH_DENSE 1
 #define VIT_COUNT_WORK 0

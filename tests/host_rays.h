@@ -5,7 +5,7 @@
 #include "host_lab.h"
 #include "ray_lab.h"
 
-static const vit_material host_grey = {.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE};
+static const vit_material host_grey = {.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE, .exponent = 1, .ior = 1};
 
 /* `constants` is filled, and must live as long as the result. */
 static inline host_lab_mesh host_mesh(const ray_mesh *r, vit_scene *constants) {

@@ -48,14 +48,18 @@ static inline cl_device_id lab_first_device(void) {
 }
 
 /* The runtime's options for this width and effect set, the view `final` in XRGB8888. */
-static inline void lab_options(char *text, size_t size, unsigned lanes, vit_u32 effects) {
+static inline void lab_options(char *text, size_t size, unsigned lanes, vit_u64 effects) {
     int n = snprintf(text, size,
-                     "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0 "
-                     "-DVIT_EFFECT_DOTS=0",
+                     "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0",
                      lanes);
 #define X(bit, name, macro, why)                                                                                               \
-    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u", effects >> bit & 1u);
+    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u", (unsigned)(effects >> bit & 1u));
     VIT_EFFECTS(X)
+#undef X
+    /* Of the modes only what the effects themselves ask for. */
+    const unsigned FILM = 0, DOTS = 0, CHAINS = (effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0;
+#define X(macro) n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u", macro);
+    VIT_MODES(X)
 #undef X
     assert_in_range(n, 0, size - 1);
 }
@@ -74,9 +78,9 @@ static inline void lab_build(lab *l, const char *options) {
 }
 
 /* The kernels and `test_kernels` as one program, `lanes` wide, with more options (a space first). lab_close() when done. */
-static inline lab lab_open_with(unsigned lanes, vit_u32 effects, const char *more, const char *test_kernels) {
+static inline lab lab_open_with(unsigned lanes, vit_u64 effects, const char *more, const char *test_kernels) {
     const char *sources[LAB_MAX_SOURCES];
-    char options[2048];
+    char options[4096];
     cl_int e;
     lab l = {.device = lab_first_device()};
     assert_in_range(vit_kernel_source_count, 1, LAB_MAX_SOURCES - 1);
@@ -95,7 +99,7 @@ static inline lab lab_open_with(unsigned lanes, vit_u32 effects, const char *mor
     return l;
 }
 
-static inline lab lab_open(unsigned lanes, vit_u32 effects, const char *test_kernels) {
+static inline lab lab_open(unsigned lanes, vit_u64 effects, const char *test_kernels) {
     return lab_open_with(lanes, effects, "", test_kernels);
 }
 

@@ -1,5 +1,6 @@
 /* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
- * light whose photons are baked and a moving point light whose photons are traced, zones and areas, two frames. Every float is
+ * light whose photons are baked and a moving point light whose photons are traced, a point a set on area lights and in the sky, which
+ * is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Every float is
  * exact in binary, so the pack has the same bytes with every compiler. */
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
@@ -8,7 +9,8 @@
 
 #include <string.h>
 
-enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4, FIXTURE_CELLS = 27 };
+enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4, FIXTURE_CELLS = 27, FIXTURE_SKY = 2,
+       FIXTURE_POINTS = 2 * VIT_PATTERNS };
 
 typedef struct pack_fixture {
     vit_scene scene;
@@ -23,6 +25,8 @@ typedef struct pack_fixture {
     vit_u32 texels[FIXTURE_TEXELS];
     vit_u32 sides[2 * FIXTURE_TRIANGLES]; /* 24 in use for the cube */
     vit_cell cells[FIXTURE_CELLS];
+    vit_emitter emitters[FIXTURE_POINTS];
+    vit_sky_texel sky[(FIXTURE_SKY + 2) * (FIXTURE_SKY + 2)];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -95,7 +99,9 @@ static inline void fixture_scene(vit_scene *s) {
                      .tile = 16,
                      .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) |
                                 VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) |
-                                VIT_BIT(AREA) | VIT_BIT(SEQUENCE),
+                                VIT_BIT(AREA) | VIT_BIT(SEQUENCE) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) |
+                                VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) |
+                                VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS),
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,
@@ -113,7 +119,15 @@ static inline void fixture_scene(vit_scene *s) {
                      .background = {0.25f, 0.5f, 1},
                      .max_nodes = 64,
                      .max_list = 1000,
-                     .cells = FIXTURE_CELLS};
+                     .cells = FIXTURE_CELLS,
+                     .ambient = {0.125f, 0.25f, 0.5f},
+                     .area_samples = 1,
+                     .sky_samples = 1,
+                     .sky_size = FIXTURE_SKY,
+                     .chain = 8,
+                     .copies = 2,
+                     .contrast = 0.0625f,
+                     .offset = {{-0.25f, -0.25f}, {0.25f, 0.25f}}};
 }
 
 static inline void fixture_frames(pack_fixture *f) {
@@ -145,8 +159,8 @@ static inline void fixture_frames(pack_fixture *f) {
 }
 
 static inline void fixture_surfaces(pack_fixture *f) {
-    f->materials[0] = (vit_material){.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE};
-    f->materials[1] = (vit_material){.albedo = {1, 1, 1}, .texture = 0};
+    f->materials[0] = (vit_material){.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE, .exponent = 1, .ior = 1};
+    f->materials[1] = (vit_material){.albedo = {1, 1, 1}, .texture = 0, .exponent = 1, .ior = 1};
     f->textures[0] = (vit_texture){.mip_count = 3, .wrap_u = VIT_WRAP_REPEAT, .wrap_v = VIT_WRAP_CLAMP};
     vit_u32 first = 0; /* word of the mip's top left gutter corner */
     for (vit_u32 i = 0; i < 3; i++) {
@@ -169,6 +183,17 @@ static inline void fixture_surfaces(pack_fixture *f) {
     f->photons[FIXTURE_BAKED - 1] = (vit_photon){.radius2 = -1}; /* an empty slot */
 }
 
+static inline void fixture_far_lights(pack_fixture *f) {
+    for (int i = 0; i < FIXTURE_POINTS; i++)
+        f->emitters[i] = i < VIT_PATTERNS ? (vit_emitter){.position = {0.0625f * (float)i, 0.75f, 0},
+                                                          .radius2 = 0.0625f,
+                                                          .normal = {0, -1, 0},
+                                                          .power = {1, 2, 3}}
+                                          : (vit_emitter){.position = {0, 1, 0}, .power = {0.5f, 0.5f, 1}};
+    for (int i = 0; i < (FIXTURE_SKY + 2) * (FIXTURE_SKY + 2); i++)
+        f->sky[i] = (vit_sky_texel){.radiance = {0.25f, 0.5f, (float)i}};
+}
+
 /* The first side has 2 x 2 cells, the others one each. */
 static inline void fixture_cells(pack_fixture *f) {
     for (vit_u32 i = 0; i < 2 * FIXTURE_TRIANGLES; i++)
@@ -186,6 +211,7 @@ static inline void fixture_make(pack_fixture *f) {
     fixture_frames(f);
     fixture_surfaces(f);
     fixture_cells(f);
+    fixture_far_lights(f);
     vit_pack_derive(&f->scene, NULL);
 }
 
@@ -223,6 +249,8 @@ static inline vit_status fixture_assemble(const pack_fixture *f, void **bytes, s
                                              [VIT_SECTION_ATLS] = f->texels,
                                              [VIT_SECTION_SIDE] = f->sides,
                                              [VIT_SECTION_CELL] = f->cells,
+                                             [VIT_SECTION_EMIT] = f->emitters,
+                                             [VIT_SECTION_SKYT] = f->sky,
                                              [VIT_SECTION_PHOT] = f->photons,
                                              [VIT_SECTION_GOLD] = f->golds}};
     return pack_assemble(&sections, bytes, size, why);

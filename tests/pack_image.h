@@ -31,6 +31,8 @@ typedef struct image {
     vit_mip *mips;
     vit_u32 *sides;
     vit_cell *cells;
+    vit_emitter *emitters;
+    vit_sky_texel *sky;
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -56,6 +58,8 @@ static inline image image_of(const pack_fixture *f) {
     im.mips = section(&im, VIT_SECTION_MIPS);
     im.sides = section(&im, VIT_SECTION_SIDE);
     im.cells = section(&im, VIT_SECTION_CELL);
+    im.emitters = section(&im, VIT_SECTION_EMIT);
+    im.sky = section(&im, VIT_SECTION_SKYT);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;

@@ -68,7 +68,7 @@ static inline vit_photon rig_photon(const float p[3], const float d[3], float ra
 /* One frame of width x height, one grey material, no light; mesh and what the test adds come after. */
 static inline void rig_begin(rig *r, uint32_t width, uint32_t height) {
     memset(r, 0, sizeof *r);
-    r->material = (vit_material){.albedo = {1, 1, 1}, .texture = VIT_NONE};
+    r->material = (vit_material){.albedo = {1, 1, 1}, .texture = VIT_NONE, .exponent = 1, .ior = 1};
     r->scene = (vit_scene){.width = width,
                            .height = height,
                            .frames = 1,
@@ -79,6 +79,7 @@ static inline void rig_begin(rig *r, uint32_t width, uint32_t height) {
                            .slice_count = 1,
                            .slice_near = 0.125f,
                            .slice_scale = 4,
+                           .copies = 1,
                            .max_nodes = 1u << 16,
                            .max_list = 1u << 16};
 }

@@ -8,7 +8,10 @@
 #define X(bit, name, macro, why) static _Thread_local uint VIT_EFFECT_##macro;
 VIT_EFFECTS(X)
 #undef X
-static _Thread_local uint VIT_EFFECT_DOTS, VIT_EFFECT_FILM, VIT_EFFECT_CHAINS, VIT_VIEW, VIT_FORMAT, host_counts;
+#define X(macro) static _Thread_local uint VIT_EFFECT_##macro;
+VIT_MODES(X)
+#undef X
+static _Thread_local uint VIT_VIEW, VIT_FORMAT, host_counts;
 #define VIT_WITH(effect) 1
 #define VIT_WITH_DENSE 1
 #define VIT_COUNT_WORK 1
@@ -20,9 +23,9 @@ static void set_variables(const host_call *call) {
 #define X(bit, name, macro, why) VIT_EFFECT_##macro = call->effects >> bit & 1u;
     VIT_EFFECTS(X)
 #undef X
-    VIT_EFFECT_DOTS = (call->effects & ON_DOTS) != 0;
-    VIT_EFFECT_FILM = (call->effects & ON_FILM) != 0;
-    VIT_EFFECT_CHAINS = (call->effects & ON_CHAINS) != 0;
+#define X(macro) VIT_EFFECT_##macro = (call->effects & ON_##macro) != 0;
+    VIT_MODES(X)
+#undef X
     VIT_VIEW = (uint)call->view;
     VIT_FORMAT = (uint)call->format;
     host_counts = (call->effects & ON_WORK) != 0;

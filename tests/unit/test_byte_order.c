@@ -76,6 +76,15 @@ static void a_pack_swapped_twice_is_the_pack(void **state) {
     free(kept.bytes);
 }
 
+static void the_one_field_of_two_words_comes_out_whole(void **state) {
+    (void)state;
+    vit_scene s = {.width = 0x01020304, .effects = 0x1112131415161718u}, t;
+    vit_swap_words(&t, &s, sizeof s, VIT_WORD);
+    vit_swap_scene(&t);
+    assert_int_equal(t.width, 0x04030201);
+    assert_true(t.effects == 0x1817161514131211u);
+}
+
 /* Lines of records.clh between "typedef struct" and "}" must begin with a type of 32 bits. */
 static void every_field_of_every_record_is_a_word(void **state) {
     (void)state;
@@ -91,6 +100,8 @@ static void every_field_of_every_record_is_a_word(void **state) {
         if (line[0] == '}')
             inside = 0;
         if (inside && !skip && sscanf(line, " %63[A-Za-z0-9_]", type) == 1) {
+            if (strstr(line, "vit_u64 effects;")) /* vit_swap_scene() puts it right */
+                continue;
             if (strcmp(type, types[0]) != 0 && strcmp(type, types[1]) != 0 && strcmp(type, types[2]) != 0)
                 fail_msg("a record has a field of type %s", type);
             fields++;
@@ -135,6 +146,7 @@ int main(void) {
         cmocka_unit_test(a_swap_reverses_the_bytes_of_each_word),
         cmocka_unit_test(header_and_entry_keep_their_characters_and_swap_their_numbers),
         cmocka_unit_test(a_pack_swapped_twice_is_the_pack),
+        cmocka_unit_test(the_one_field_of_two_words_comes_out_whole),
         cmocka_unit_test(every_field_of_every_record_is_a_word),
         cmocka_unit_test(a_hash_of_swapped_words_is_the_hash_of_what_was_swapped),
         cmocka_unit_test(a_little_endian_machine_looks_at_what_lies_there),

@@ -648,39 +648,25 @@ static void a_camera_stands_where_its_node_is(void **state) {
 static void lights_have_their_power_cone_and_range(void **state) {
     model m;
     (void)state;
-    put_gltf(
-        "",
-        LIGHTS(
-            "{\"type\":\"point\",\"color\":[1,0.5,0.25],\"intensity\":8},{\"type\":\"spot\",\"intensity\":1,\"range\":6,"
-            "\"spot\":{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}},{\"type\":\"directional\"}") "\"scenes\":[{\"nodes\":["
-                                                                                                     "0,1,2,3]}],\"nodes\":[{"
-                                                                                                     "\"mesh\":0},"
-                                                                                                     "{\"name\":\"Bulb\","
-                                                                                                     "\"translation\":[0,2,0],"
-                                                                                                     "\"extensions\":{\"KHR_"
-                                                                                                     "lights_punctual\":{"
-                                                                                                     "\"light\":0}}},"
-                                                                                                     "{\"name\":\"Spot\","
-                                                                                                     "\"rotation\":[-0."
-                                                                                                     "70710678,0,0,0.70710678],"
-                                                                                                     "\"extensions\":{\"KHR_"
-                                                                                                     "lights_punctual\":{"
-                                                                                                     "\"light\":1}}},"
-                                                                                                     "{\"name\":\"Sun\","
-                                                                                                     "\"extensions\":{\"KHR_"
-                                                                                                     "lights_punctual\":{"
-                                                                                                     "\"light\":2}}}]"
-                                                                                                     "," MATERIAL(BASE("")));
+#define LIT_NODE(name, more, light) "{\"name\":\"" name "\"," more "\"extensions\":{\"KHR_lights_punctual\":{\"light\":" light "}}}"
+    put_gltf("",
+             LIGHTS("{\"type\":\"point\",\"color\":[1,0.5,0.25],\"intensity\":8},{\"type\":\"spot\",\"intensity\":1,\"range\":6,"
+                    "\"spot\":{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}},{\"type\":\"directional\",\"color\":[1,0.5,0.25],"
+                    "\"intensity\":3}") "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"mesh\":0}," LIT_NODE(
+                 "Bulb", "\"translation\":[0,2,0],", "0") "," LIT_NODE("Spot", "\"rotation\":[-0.70710678,0,0,0.70710678],",
+                                                                       "1") "," LIT_NODE("Sun", "\"rotation\":[-0.70710678,0,0,0.70710678],",
+                                                                                         "2") "]," MATERIAL(BASE("")));
     import_good(FILE_OF("quad.gltf"), &m);
-    assert_true(m.light_count == 2 && m.warnings == 1);
-    const model_light *bulb = &m.lights[0], *spot = &m.lights[1];
+    assert_true(m.light_count == 3 && m.warnings == 0);
+    const model_light *bulb = &m.lights[0], *spot = &m.lights[1], *sun = &m.lights[2];
     const double watts = 4.0 * 3.14159265358979 * 8.0;
     assert_string_equal(bulb->name, "Bulb");
-    assert_true(!bulb->spot && bulb->position[1] == 2.0 && bulb->range == 0.0);
+    assert_true(bulb->kind == VIT_LIGHT_POINT && bulb->position[1] == 2.0 && bulb->range == 0.0);
     assert_true(fabs(bulb->power[0] - watts) < 1e-4 && fabs(bulb->power[2] - 0.25 * watts) < 1e-4);
-    assert_true(spot->spot && spot->range == 6.0 && fabs(spot->direction[1] + 1.0) < 1e-6);
+    assert_true(spot->kind == VIT_LIGHT_SPOT && spot->range == 6.0 && fabs(spot->direction[1] + 1.0) < 1e-6);
     assert_true(fabs(spot->inner - 14.3239449) < 1e-4 && fabs(spot->outer - 28.6478898) < 1e-4);
-    assert_non_null(strstr(last_warning, "'Sun'"));
+    assert_true(sun->kind == VIT_LIGHT_DIRECTIONAL && sun->range == 0.0 && fabs(sun->direction[1] + 1.0) < 1e-6);
+    assert_true(fabs(sun->power[0] - 3.0) < 1e-6 && fabs(sun->power[1] - 1.5) < 1e-6 && fabs(sun->power[2] - 0.75) < 1e-6);
     model_free(&m);
 }
 

@@ -20,7 +20,8 @@ static vit_scene full_hd(void) {
                        .paths = 10000,
                        .baked = 77,
                        .bounces = 4,
-                       .slice_count = 500};
+                       .slice_count = 500,
+                       .copies = 1};
 }
 
 static void full_hd_in_500_slices_has_a_key_of_23_bits_on_5_levels(void **state) {
@@ -128,7 +129,9 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
                   LIMIT(triangles, 300, 1 << 27), LIMIT(nodes, 1, 1000),      LIMIT(materials, 1, 1 << 24),
                   LIMIT(textures, 0, 65536),      LIMIT(mips, 0, 65536 * 15), LIMIT(texels, 0, 0x7fffffff),
                   LIMIT(lights, 0, 64),           LIMIT(paths, 0, 1000000),   LIMIT(bounces, 1, 32),
-                  LIMIT(slice_count, 1, 4096),    LIMIT(tile, 8, 64)};
+                  LIMIT(slice_count, 1, 4096),    LIMIT(tile, 8, 64),         LIMIT(chain, 0, 32),
+                  LIMIT(area_samples, 0, 1024),   LIMIT(sky_samples, 0, 1024), LIMIT(sky_size, 0, 2048),
+                  LIMIT(copies, 1, 16)};
 #undef LIMIT
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
         for (int k = 0; k < 4; k++) {

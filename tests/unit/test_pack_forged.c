@@ -9,14 +9,14 @@
 /* X(place, name, part of the line, damage done to `im`) */
 
 #define ADD(count, by) im->scene->count += by
-#define EFFECTS(on, off) im->scene->effects = (im->scene->effects | (on)) & ~(vit_u32)(off)
+#define EFFECTS(on, off) im->scene->effects = (im->scene->effects | (on)) & ~(vit_u64)(off)
 #define BIT(name) VIT_BIT(name)
 #define ENTRY(code) im->table[VIT_SECTION_##code]
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 4", im->header->version = 4)                                                             \
-    X(header, too_few_sections, "11 sections", im->header->sections = 11)                                                      \
+    X(header, newer_version, "version 5", im->header->version = 5)                                                             \
+    X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
     X(header, reserved_byte, "reserved", im->header->zero[31] = 1)                                                             \
@@ -60,6 +60,48 @@
     X(META, no_bounces, "bounces", im->scene->bounces = 0)                                                                     \
     X(META, huge_bounces, "bounces", im->scene->bounces = 33)                                                                  \
     X(META, too_many_photons, "photons", im->scene->paths = 1000000, im->scene->bounces = 32, im->scene->baked = 1 << 22)      \
+    X(META, no_copies, "copies", im->scene->copies = 0)                                                                        \
+    X(META, three_copies, "copies must be 1, 2, 4, 8 or 16", im->scene->copies = 3)                                            \
+    X(META, too_many_copies, "copies", im->scene->copies = 32)                                                                 \
+    X(META, one_copy_with_the_effect, "1 copies contradict", im->scene->copies = 1)                                            \
+    X(META, copies_without_the_effect, "2 copies contradict", EFFECTS(0, BIT(ANTIALIAS)))                                      \
+    X(META, contrast_above_1, "contrast", im->scene->contrast = 1.5f)                                                          \
+    X(META, negative_contrast, "contrast", im->scene->contrast = -1)                                                           \
+    X(META, offset_of_nan, "offset 15", im->scene->offset[15][1] = NAN)                                                        \
+    X(META, offset_far_off, "offset 0", im->scene->offset[0][0] = 1.5f)                                                        \
+    X(META, negative_ambient, "ambient green", im->scene->ambient[1] = -1)                                                     \
+    X(META, ambient_of_nan, "ambient red", im->scene->ambient[0] = NAN)                                                        \
+    X(META, chain_too_long, "chain", im->scene->chain = 33)                                                                    \
+    X(META, no_chain_with_mirrors, "chains of 0 contradict", im->scene->chain = 0)                                             \
+    X(META, chain_without_mirror_or_glass, "chains of 8 contradict", EFFECTS(0, BIT(MIRROR) | BIT(GLASS)))                     \
+    X(META, too_many_area_samples, "area_samples", im->scene->area_samples = 1025)                                             \
+    X(META, too_many_sky_samples, "sky_samples", im->scene->sky_samples = 0xffffffff)                                          \
+    X(META, area_points_without_the_effect, "1 and 1 points", EFFECTS(0, BIT(AREA_LIGHTS)))                                    \
+    X(META, no_sky_points_with_the_effect, "1 and 0 points", im->scene->sky_samples = 0)                                       \
+    X(META, sky_too_large, "sky_size", im->scene->sky_size = 2049)                                                             \
+    X(META, sky_without_its_effect, "2 texels a side contradicts", EFFECTS(0, BIT(SKY_IMAGE)))                                 \
+    X(META, caustics_without_photons, "without", EFFECTS(0, BIT(PHOTONS) | BIT(TRACED)))                                       \
+    X(META, directional_without_lights, "DIRECTIONAL without LIGHTS", EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))\
+    X(META, reserved_words_in_use, "padding", im->scene->pad[4] = 1)                                                           \
+    X(EMIT, position_is_nan, "point 3: position", im->emitters[3].position[1] = NAN)                                           \
+    X(EMIT, normal_too_short, "point 0: position is not finite, or normal", im->emitters[0].normal[1] = -0.5f)                 \
+    X(EMIT, direction_too_long, "point 16", im->emitters[16].position[1] = 2)                                                  \
+    X(EMIT, point_without_area, "point 15: radius2", im->emitters[15].radius2 = 0)                                             \
+    X(EMIT, sky_with_an_area, "point 31: radius2", im->emitters[31].radius2 = 1)                                               \
+    X(EMIT, negative_power, "point 1: power", im->emitters[1].power[0] = -1)                                                   \
+    X(EMIT, too_much_power, "point 17: power", im->emitters[17].power[2] = 2e15f)                                              \
+    X(SKYT, radiance_is_nan, "texel 15: radiance", im->sky[15].radiance[2] = NAN)                                              \
+    X(SKYT, negative_radiance, "texel 0: radiance", im->sky[0].radiance[0] = -1)                                               \
+    X(MATL, unknown_kind, "material 1: unknown kind", im->materials[1].kind = 4)                                               \
+    X(MATL, specular_above_1, "material 0: specular", im->materials[0].specular[1] = 1.5f)                                     \
+    X(MATL, exponent_of_0, "exponent", im->materials[0].exponent = 0)                                                          \
+    X(MATL, exponent_of_nan, "exponent", im->materials[1].exponent = NAN)                                                      \
+    X(MATL, ior_below_1, "ior", im->materials[0].ior = 0.5f)                                                                   \
+    X(MATL, negative_absorption, "absorption", im->materials[0].absorption[2] = -1)                                            \
+    X(MATL, lights_of_2, "lights must be 0 or 1", im->materials[0].lights = 2)                                                 \
+    X(MATL, padding_in_use, "padding", im->materials[1].pad[1] = 7)                                                            \
+    X(LITE, directional_without_its_effect, "without the effect DIRECTIONAL", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL)      \
+    X(LITE, directional_with_a_range, "directional light with a range", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL, EFFECTS(BIT(DIRECTIONAL), 0))\
     X(META, no_slices, "slice_count", im->scene->slice_count = 0)                                                              \
     X(META, huge_slices, "slice_count", im->scene->slice_count = 4097)                                                         \
     X(META, too_many_key_bits, "key_bits", im->scene->slice_count = 4096, im->scene->width = 7680, im->scene->height = 4320,   \
@@ -84,7 +126,7 @@
     X(META, slice_near_of_0, "slice_near", im->scene->slice_near = 0)                                                          \
     X(META, negative_slice_scale, "slice_scale", im->scene->slice_scale = -2)                                                  \
     X(META, infinite_background, "background green", im->scene->background[1] = INFINITY)                                      \
-    X(META, unknown_effect, "unknown effects 0x80000000", EFFECTS(0x80000000u, 0))                                             \
+    X(META, unknown_effect, "unknown effects 0x8000000000000000", EFFECTS((vit_u64)1 << 63, 0))                                             \
     X(META, list_and_buckets, "exclude", EFFECTS(BIT(BUCKETS), 0))                                                             \
     X(META, neither_list_nor_buckets, "without LIST or BUCKETS", EFFECTS(0, BIT(LIST)))                                        \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
@@ -103,7 +145,7 @@
     X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu), im->scene->paths = im->scene->baked = 0,           \
       vit_pack_derive(im->scene, NULL))                                                                                        \
     X(META, textures_effect_without_textures, "without a texture", im->scene->textures = 0)                                    \
-    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, 0x7fffff80 | BIT(PHOTONS)),                     \
+    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),                     \
       im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
@@ -134,7 +176,7 @@
     X(PHOT, power_near_the_largest_float, "power", im->photons[0].power[1] = 1e38f)                                            \
     X(CAMS, negative_exposure, "exposure", im->cameras[0].exposure = -1)                                                       \
     X(CAMS, padding_in_use, "padding", im->cameras[1].pad3 = 1)                                                                \
-    X(LITE, unknown_kind, "frame 0, light 0: unknown kind", im->lights[0].kind = 2)                                            \
+    X(LITE, unknown_kind, "frame 0, light 0: unknown kind", im->lights[0].kind = 3)                                            \
     X(LITE, unknown_falloff, "frame 1, light 1: unknown falloff", im->lights[3].falloff = 2)                                   \
     X(LITE, position_is_nan, "frame 1, light 0: position", im->lights[2].position[1] = NAN)                                    \
     X(LITE, spot_without_direction, "not a unit vector", im->lights[0].direction[1] = 0)                                       \
@@ -157,7 +199,7 @@
     X(GEOM, normal_is_0, "triangle 0: normal is 0", im->triangles[0].nx = im->triangles[0].ny = im->triangles[0].nz = 0)       \
     X(ATTR, unknown_material, "triangle 2: material 2 of 2", im->attributes[2].material = 2)                                   \
     X(ATTR, huge_material, "material 16777215 of 2", im->attributes[0].material = 0xffffff)                                    \
-    X(ATTR, unknown_flag, "unknown flags", im->attributes[0].material |= 0x20000000)                                           \
+    X(ATTR, unknown_flag, "unknown flags", im->attributes[0].material |= 0x10000000)                                           \
     X(ATTR, uv_is_nan, "triangle 11: a texture coordinate", im->attributes[11].uv[2][1] = NAN)                                 \
     X(ATTR, first_uv_is_infinite, "triangle 1: a texture coordinate", im->attributes[1].uv[0][0] = INFINITY)                   \
     X(ATTR, padding_in_use, "padding", im->attributes[0].pad[1] = 1)                                                           \
@@ -243,7 +285,7 @@
     X(paths_side_by_side, share_paths(im, 0, 16))                                                                               \
     X(paths_in_reverse, share_paths(im, 16, 0))                                                                                 \
     X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 16)                                            \
-    X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK)                                       \
+    X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK | VIT_TRIANGLE_SMOOTH)                                       \
     X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
     X(most_emission, im->materials[0].emission[0] = VIT_MAX_RADIANCE)                                                          \
     X(most_intensity, im->lights[0].intensity[0] = VIT_MAX_INTENSITY)                                                          \

@@ -4,6 +4,7 @@
  * stands on a line of its own, and must give VIT_BAD_INPUT and exactly "file:line: ... what". Scenes go through real files,
  * since files (missing, folders, includes) are half of the subject. */
 #include "scene.h"
+#include "vitrine_pack.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -143,12 +144,12 @@ static void every_setting_of_a_light_is_read(void **state) {
     read_good(full, &s);
     assert_int_equal(s.light_count, 3);
     const scene_light *l = s.lights;
-    assert_true(!l[0].spot && l[0].range == 0.0 && !l[0].window && l[0].photons && l[0].key_count == 2 && l[0].line == 9);
+    assert_true(l[0].kind == VIT_LIGHT_POINT && l[0].range == 0.0 && !l[0].window && l[0].photons && l[0].key_count == 2 && l[0].line == 9);
     assert_true(l[0].keys[0].time == 0.0 && l[0].keys[1].time == 1.0);
     near3(l[0].keys[0].power, 100, 90, 80.5);
     near3(l[0].keys[1].power, 0, 0, 0);
     near3(l[0].keys[1].position, 0, 2, 0);
-    assert_true(l[1].spot && l[1].inner == 20.0 && l[1].outer == 40.0 && l[1].range == 6.0 && l[1].window && !l[1].photons);
+    assert_true(l[1].kind == VIT_LIGHT_SPOT && l[1].inner == 20.0 && l[1].outer == 40.0 && l[1].range == 6.0 && l[1].window && !l[1].photons);
     assert_true(l[1].key_count == 1 && l[1].keys[0].time == 0.25);
     near3(l[1].keys[0].target, 1, 0, 0);
     assert_string_equal(l[2].use, "Lamp");
@@ -285,11 +286,11 @@ REFUSES(a_light_with_a_cone_of_270_degrees_is_refused_with_its_line, 4, "light 2
 REFUSES(an_inner_cone_outside_the_outer_is_refused, 3, "light 1: 'inner' (60)",
         GOOD "lights = ( { type = \"spot\"; inner = 60; outer = 40; " SPOT "} );\n")
 REFUSES(a_light_without_a_type_is_refused, 3, "light 1: needs a 'type'", GOOD "lights = ( { " KEYS "} );\n")
-REFUSES(a_light_of_unknown_type_is_refused, 3, "'type' must be \"point\" or \"spot\", got \"sun\"",
+REFUSES(a_light_of_unknown_type_is_refused, 3, "'type' must be \"point\", \"spot\" or \"directional\", got \"sun\"",
         GOOD "lights = ( { type = \"sun\"; " KEYS "} );\n")
 REFUSES(a_light_without_keys_is_refused, 3, "light 1: needs either", GOOD "lights = ( { type = \"point\"; } );\n")
 REFUSES(a_spot_light_without_a_target_is_refused, 3, "needs a 'target'", GOOD "lights = ( { type = \"spot\"; " KEYS "} );\n")
-REFUSES(a_point_light_with_a_target_is_refused, 3, "'target' is for spot lights",
+REFUSES(a_point_light_with_a_target_is_refused, 3, "'target' is for spot and directional lights",
         GOOD "lights = ( { type = \"point\"; " SPOT "} );\n")
 REFUSES(a_point_light_with_a_cone_is_refused, 3, "for spot lights",
         GOOD "lights = ( { type = \"point\"; outer = 20; " KEYS "} );\n")
@@ -311,7 +312,7 @@ REFUSES(zero_bounces_are_refused, 3, "quality: 'bounces' must be in [1, 32], got
 REFUSES(a_tile_of_24_pixels_is_refused, 3, "'tile' must be 8, 16, 32 or 64, got 24", GOOD "quality: { tile = 24; };\n")
 REFUSES(one_sample_in_2_is_refused, 3, "'indirect_samples' must be 1, 4 or 16, got 2",
         GOOD "quality: { indirect_samples = 2; };\n")
-REFUSES(an_unknown_filter_is_refused, 3, "'texture_filter' must be \"nearest\", \"bilinear\" or \"trilinear\", got cubic",
+REFUSES(an_unknown_filter_is_refused, 3, "'texture_filter' must be \"nearest\", \"bilinear\" or \"trilinear\", got \"cubic\"",
         GOOD "quality: { texture_filter = \"cubic\"; };\n")
 REFUSES(a_filter_that_is_a_number_is_refused, 3, "'texture_filter' must be \"nearest\"",
         GOOD "quality: { texture_filter = 2; };\n")

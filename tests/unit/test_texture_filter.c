@@ -65,7 +65,7 @@ static double bilinear(const image *m, int level, double s, double t, int k) {
 }
 
 /* What the filter should give; *near: how near the choice of texel or level is to its neighbour. */
-static double expected(const image *m, vit_u32 effects, const float in[3], int k, double *near) {
+static double expected(const image *m, vit_u64 effects, const float in[3], int k, double *near) {
     int exponent;
     const double mantissa = 2 * frexp((double)in[2] * EDGE * EDGE, &exponent), lambda = (exponent - 1 + mantissa - 1) / 2;
     const double s = in[0], t = in[1];
@@ -91,7 +91,7 @@ static void points_make(float in[3 * POINTS]) {
     }
 }
 
-static void filter(const image *m, vit_u32 effects, unsigned lanes, const float *in, float *out) {
+static void filter(const image *m, vit_u64 effects, unsigned lanes, const float *in, float *out) {
     lab l = lab_open(lanes, VIT_BIT(TEXTURES) | effects, kernels);
     const size_t size = 3 * POINTS * sizeof(float);
     const cl_mem arguments[] = {lab_buffer(&l, &m->texture, sizeof m->texture), lab_buffer(&l, m->mips, sizeof m->mips),
@@ -104,7 +104,7 @@ static void filter(const image *m, vit_u32 effects, unsigned lanes, const float 
     lab_close(&l);
 }
 
-static void check(vit_u32 effects) {
+static void check(vit_u64 effects) {
     static image m;
     static float in[3 * POINTS], out[3 * POINTS], wide[3 * POINTS];
     image_make(&m);

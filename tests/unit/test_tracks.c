@@ -252,9 +252,9 @@ static void a_spot_light_is_full_at_its_inner_cone_and_dark_at_its_outer(void **
     setting x;
     (void)state;
     set(&x, 1);
-    add_light(&x, (scene_light){.spot = true, .inner = 20.0, .outer = 40.0, .window = true, .range = 2.0},
+    add_light(&x, (scene_light){.kind = VIT_LIGHT_SPOT, .inner = 20.0, .outer = 40.0, .window = true, .range = 2.0},
               (scene_light_key){.position = {0, 3, 0}, .target = {0, 1, 0}, .power = {1, 1, 1}});
-    add_light(&x, (scene_light){.spot = true, .inner = 40.0, .outer = 40.0},
+    add_light(&x, (scene_light){.kind = VIT_LIGHT_SPOT, .inner = 40.0, .outer = 40.0},
               (scene_light_key){.position = {0, 3, 0}, .target = {3, 3, 0}, .power = {1, 1, 1}});
     evaluate(&x);
     const vit_light *l = x.t.lights;
@@ -291,10 +291,10 @@ static void a_light_may_come_from_the_mesh(void **state) {
     set(&x, 1);
     add_light(&x, (scene_light){.use = "Lamp"}, (scene_light_key){0});
     x.lights[0].key_count = 0;
-    refuse(&x, "test.cfg:10: light 1: no mesh has a point or spot light 'Lamp'");
+    refuse(&x, "test.cfg:10: light 1: no mesh has a point, spot or directional light 'Lamp'");
     x.m.light_count = 1;
     x.model_lights[0] = (model_light){.name = "Lamp",
-                                      .spot = true,
+                                      .kind = VIT_LIGHT_SPOT,
                                       .position = {1, 1, 1},
                                       .direction = {0, 0, 1},
                                       .power = {4.0 * PI, 0, 0},
@@ -315,7 +315,7 @@ static void a_spot_light_that_meets_its_target_is_refused(void **state) {
     setting x;
     (void)state;
     set(&x, 21);
-    add_light(&x, (scene_light){.spot = true, .outer = 45.0}, (scene_light_key){.position = {0, 1, 0}, .power = {1, 1, 1}});
+    add_light(&x, (scene_light){.kind = VIT_LIGHT_SPOT, .outer = 45.0}, (scene_light_key){.position = {0, 1, 0}, .power = {1, 1, 1}});
     x.keys[0][1] = (scene_light_key){.time = 2.0, .position = {0, -1, 0}, .power = {1, 1, 1}};
     x.lights[0].key_count = 2;
     refuse(&x, "test.cfg:10: light 1: 'position' and 'target' meet in frame 10");

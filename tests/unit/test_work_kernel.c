@@ -13,10 +13,13 @@ static char *preprocessed(unsigned lanes, int counting) {
     char command[1024];
     int n = snprintf(command, sizeof command,
                      VIT_CC " -E -P -x c " KERNELS " -D__OPENCL_VERSION__=120 -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0 "
-                            "-DVIT_EFFECT_DOTS=1 -DVIT_COUNT_WORK=%d",
+                            "-DVIT_COUNT_WORK=%d",
                      lanes, counting);
 #define X(bit, name, macro, why) n += snprintf(command + n, sizeof command - (size_t)n, " -DVIT_EFFECT_" #macro "=1");
     VIT_EFFECTS(X)
+#undef X
+#define X(macro) n += snprintf(command + n, sizeof command - (size_t)n, " -DVIT_EFFECT_" #macro "=1");
+    VIT_MODES(X)
 #undef X
     assert_in_range(n, 1, sizeof command - 1);
     FILE *f = fopen(KERNELS, "w");

@@ -60,7 +60,7 @@ static void check_quality_text(const scene_quality *q) {
 static void check_tracks(const scene *s) {
     static model_camera camera = {.name = "c", .target = {0, 0, -1}, .up = {0, 1, 0}, .fov = 50};
     static model_light light = {
-        .name = "l", .spot = true, .direction = {0, -1, 0}, .power = {1, 2, 3}, .inner = 10, .outer = 20};
+        .name = "l", .kind = VIT_LIGHT_SPOT, .direction = {0, -1, 0}, .power = {1, 2, 3}, .inner = 10, .outer = 20};
     const model m = {
         .cameras = &camera, .camera_count = 1, .lights = &light, .light_count = 1, .lo = {-1, -1, -1}, .hi = {1, 2, 3}};
     tracks t;
