@@ -124,7 +124,7 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
         return out_of_memory(why);
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
-            lights[count++] = (photons_light){out->tracks.lights[i], out->plan.baked_paths[i]};
+            lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i]};
     if (count > 0) {
         progress_stage(p->progress, "photons of still lights");
         photons_input in = {.triangles = out->geometry->triangles,

@@ -104,7 +104,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         uint32_t count = 0, found = 0;
         for (uint32_t i = 0; i < s->lights; i++)
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)
-                lights[count++] = (photons_light){frame[i], 0};
+                lights[count++] = (photons_light){.light = frame[i]};
         for (uint32_t i = 0; i < count; i++)
             lights[i].paths = paths / count > 0 ? paths / count : 1;
         photons_input in = {.triangles = z->g->triangles,

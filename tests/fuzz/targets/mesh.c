@@ -55,7 +55,7 @@ static vit_status make_shape(bake *k, vit_text *why) {
 
 static vit_status make_photons(bake *k, vit_text *why) {
     vit_scene *s = &k->p.scene;
-    const photons_light light = {k->t.lights[0], k->p.baked_paths[0]};
+    const photons_light light = {.light = k->t.lights[0], .paths = k->p.baked_paths[0]};
     const photons_input in = {.triangles = k->g.triangles,
                               .attributes = k->g.attributes,
                               .triangle_count = k->m.triangles,
