@@ -63,7 +63,8 @@ typedef struct opening {
     float far; /* m */
 } opening;
 
-/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR. Mirrors and glass hand it on. */
+/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR; 0 where it is covered. Mirrors and glass
+ * hand it on. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     const photon_scene *s = &o->e->scene;
@@ -79,7 +80,10 @@ static void look_out(void *user, uint32_t i) {
         const float u = unit_float(seed * 0xa0f2ec75u), r = sqrtf(u), h = sqrtf(float_max(1.0f - u, 4e-4f));
         sincos_turn(unit_float(seed * 0x89e18285u), &sp, &cp);
         const vec3 d = vec3_unit(vec3_along(vec3_along(vec3_scale(n, h), ax, r * cp), ay, r * sp));
-        const uint32_t found = photon_rays_nearest(&o->rays, point_of(s, side, b), d, &t);
+        const vec3 from = point_of(s, side, b);
+        if (photon_rays_covered(&o->rays, side / 2, from, n))
+            continue;
+        const uint32_t found = photon_rays_nearest(&o->rays, from, d, &t);
         sum += found == VIT_NONE || side_material(s, 2 * found)->kind != VIT_MATTE || t > o->far ? 1.0 : (double)(t / o->far);
     }
     o->e->sum[i] = sum / o->tries;
@@ -98,18 +102,24 @@ static float diagonal(const photon_scene *s) {
     return sqrtf(vec3_dot(d, d));
 }
 
-/* From how open sides lie to the sum of their weights. */
+/* From how open sides lie to the sum of their weights; covered ones go. */
 static void sum_up(emitters *e) {
     double sum = 0;
+    uint32_t kept = 0;
     for (uint32_t i = 0; i < e->count; i++) {
         const vit_material *m = side_material(&e->scene, e->side[i]);
         const double area = side_area(&e->scene, e->side[i]);
+        const uint32_t side = e->side[i];
+        if (!(e->sum[i] > 0))
+            continue;
         sum += area * radiance_sum(m) * fmax(e->sum[i], OPEN_LEAST);
-        e->sum[i] = sum;
+        e->side[kept] = side;
+        e->sum[kept++] = sum;
         e->area += area;
         for (int k = 0; k < 3; k++)
             e->flux[k] += 3.14159265358979324 * area * (double)m->emission[k];
     }
+    e->count = kept;
 }
 
 vit_status emitters_find(const photon_scene *s, unsigned threads, emitters *out, vit_text *why) {
@@ -159,23 +169,57 @@ emitter_place emitters_place(const emitters *e, double x, double y) {
     const uint32_t side = e->side[low];
     float b[3];
     triangle_weights(fmin(fmax((at - before) / weight, 0.0), 1.0), y, b);
-    emitter_place p = {.position = point_of(&e->scene, side, b), .normal = side_normal(&e->scene, side)};
+    emitter_place p = {.position = point_of(&e->scene, side, b), .normal = side_normal(&e->scene, side), .triangle = side / 2};
     p.area = (float)(side_area(&e->scene, side) * total / weight);
     if (photon_opaque_place(&e->scene, side / 2, b))
         p.power = vec3_scale(vec3_load(side_material(&e->scene, side)->emission), p.area);
     return p;
 }
 
+/* Sides that face alike, of six directions. */
+static int facing(vec3 n) {
+    const float x = fabsf(n.x), y = fabsf(n.y), z = fabsf(n.z);
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    return 2 * axis + ((axis == 0 ? n.x : axis == 1 ? n.y : n.z) < 0.0f);
+}
+
+/* What shines in each of the six directions, 1 W/sr summed over channels, is the same in every set and as much as it should be, so that
+ * pixels side by side do not differ because of a point more on this side of the lamp or that; if no set is without such points, and none of them may lie in a hole. */
+static void even_out(const emitters *e, uint32_t samples, vit_emitter *out) {
+    double whole[6] = {0}, found[VIT_PATTERNS][6] = {{0}};
+    for (uint32_t i = 0; i < e->count; i++) {
+        const vit_material *m = side_material(&e->scene, e->side[i]);
+        whole[facing(side_normal(&e->scene, e->side[i]))] += m->cutout ? -INFINITY : side_area(&e->scene, e->side[i]) * radiance_sum(m);
+    }
+    for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
+        const vit_emitter *p = out + i;
+        found[i / samples][facing(vec3_load(p->normal))] += (double)p->power[0] + (double)p->power[1] + (double)p->power[2];
+    }
+    for (int k = 0; k < 6; k++)
+        for (uint32_t set = 0; set < VIT_PATTERNS; set++)
+            if (!(found[set][k] > 0))
+                whole[k] = 0;
+    for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
+        const int k = facing(vec3_load(out[i].normal));
+        const float factor = whole[k] > 0 ? (float)(whole[k] / found[i / samples][k]) : 1.0f;
+        out[i].radius2 *= factor;
+        for (int c = 0; c < 3; c++)
+            out[i].power[c] *= factor;
+    }
+}
+
 void emitters_sets(const emitters *e, uint32_t samples, vit_emitter *out) {
+    vit_emitter *next = out;
     const float share = 1.0f / (float)samples;
     for (uint32_t set = 0; set < VIT_PATTERNS; set++)
         for (uint32_t i = 0; i < samples; i++) {
             double x, y;
             sobol_point(samples, set, i, &x, &y);
             const emitter_place p = emitters_place(e, x, y);
-            *out++ = (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
-                                   .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
-                                   .normal = {p.normal.x, p.normal.y, p.normal.z},
-                                   .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
+            *next++ = (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
+                                    .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
+                                    .normal = {p.normal.x, p.normal.y, p.normal.z},
+                                    .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
         }
+    even_out(e, samples, out);
 }

@@ -4,7 +4,8 @@
 
 #include "photon_surface.h"
 
-/* Sides shine alike, but for those that light cannot reach (VIT_SIDE_DARK_*), from where none could leave. Points are dense in proportion
+/* Both sides of a triangle shine alike, but for those that light cannot reach (VIT_SIDE_DARK_*), from where none could leave, or that are
+ * covered. Points are dense in proportion
  * to radiance, summed over channels, times how open the side lies. */
 typedef struct emitters {
     photon_scene scene;
@@ -24,6 +25,7 @@ typedef struct emitter_place {
     vec3 position, normal; /* moved off the side by ray_offset; unit normal of the side */
     vec3 power;            /* radiance / density of points, W/sr; 0 where the material is cut out */
     float area;            /* 1 / density, m2 */
+    uint32_t triangle;
 } emitter_place;
 
 /* The point for 0 < x, y < 1: even over the unit square gives the density. Not for an empty set. */

@@ -31,8 +31,6 @@ static float cone(const vit_light *light, vec3 direction) {
 
 /* What a range changes about the light's irradiance at squared distance d2; light_falloff() of kernels/direct.cl, times d2. */
 static float range_factor(const vit_light *light, float d2) {
-    if (!(light->inv_range2 > 0.0f))
-        return 1.0f;
     const float q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return float_max(1.0f - q, 0.0f) * d2;
@@ -105,10 +103,12 @@ static void plane_point(uint32_t i, double *x, double *y) {
 }
 
 /* From a point of a shining side, by the cosine: flux pi L dA. */
-static emission leave_surface(const emitters *area, uint32_t count, uint32_t i, float u, float v) {
+static emission leave_surface(const photon_rays *rays, const emitters *area, uint32_t count, uint32_t i, float u, float v) {
     double x, y;
     plane_point(i, &x, &y);
     const emitter_place at = emitters_place(area, x, y);
+    if (photon_rays_covered(rays, at.triangle, at.position, at.normal))
+        return (emission){at.position, at.normal, {0.0f, 0.0f, 0.0f}};
     return (emission){at.position, cosine_lobe(at.normal, u, v), vec3_scale(at.power, PHOTON_PI / (float)count)};
 }
 
@@ -123,11 +123,11 @@ static emission leave_sky(const photons_light *l, uint32_t i, float u, float v) 
                       vec3_scale(from.power, PHOTON_PI * radius * radius / (float)l->paths)};
 }
 
-static emission leave(const photons_light *l, uint32_t i, uint32_t number) {
+static emission leave(const photon_rays *rays, const photons_light *l, uint32_t i, uint32_t number) {
     float u, v;
     curve_point(l->paths, i, number, &u, &v);
     if (l->area)
-        return leave_surface(l->area, l->paths, i, u, v);
+        return leave_surface(rays, l->area, l->paths, i, u, v);
     return l->sky ? leave_sky(l, i, u, v) : leave_light(&l->light, l->paths, u, v);
 }
 
@@ -188,7 +188,7 @@ static vec3 shine_on(float ray_offset, const photon_surface *s, vec3 d, float t,
 static void trace_path(const baking *b, const photons_light *l, vit_photon *slots, uint32_t i, uint32_t number) {
     const uint32_t bounces = b->in->bounces;
     const uint64_t effects = b->in->effects;
-    const emission start = leave(l, i, number);
+    const emission start = leave(&b->rays, l, i, number);
     vec3 o = start.origin, d = start.direction, power = start.power;
     if (!has_power(power))
         return;
@@ -204,7 +204,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             return;
         if (hit > 0 && matt)
             store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius, cell_of(b, d, triangle, weight_of));
-        if (hit == 0 && !l->area && !l->sky)
+        if (hit == 0 && effects & VIT_BIT(RANGE) && !l->area && !l->sky)
             power = vec3_scale(power, range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
         if (matt) {

@@ -162,6 +162,15 @@ void sky_sets(const sky *s, uint32_t samples, vit_emitter *out) {
         }
 }
 
+void sky_sphere(const double lo[3], const double hi[3], float center[3], float *radius) {
+    double square = 0.0;
+    for (int k = 0; k < 3; k++) {
+        center[k] = (float)(0.5 * (lo[k] + hi[k]));
+        square += 0.25 * (hi[k] - lo[k]) * (hi[k] - lo[k]);
+    }
+    *radius = (float)(sqrt(square) * 1.001); /* however directions and planes are rounded */
+}
+
 /* ---- from longitude and latitude ---- */
 
 typedef struct splat {

@@ -34,6 +34,9 @@ typedef struct sky_ray {
 /* The direction for 0 < x, y < 1: even over the unit square is dense in proportion to radiance. Not for a black sky. */
 sky_ray sky_choose(const sky *s, double x, double y);
 
+/* Middle and radius, m, of a sphere round a box: photons of the sky leave the disc that it shows. */
+void sky_sphere(const double lo[3], const double hi[3], float center[3], float *radius);
+
 /* VIT_PATTERNS sets of `samples` directions, section EMIT's second part. */
 void sky_sets(const sky *s, uint32_t samples, vit_emitter *out);
 
