@@ -84,7 +84,7 @@ static uint8_t *read_bytes(const char *path, int *size) {
 
 static const char *decode(const uint8_t *bytes, int size, model_image *out) {
     int channels;
-    if (!stbi_info_from_memory(bytes, size, &out->width, &out->height, &channels))
+    if (!stbi_info_from_memory(bytes, size, &out->width, &out->height, &channels) || stbi_is_hdr_from_memory(bytes, size))
         return "is not an image that can be read (PNG, JPEG, TGA, BMP)";
     if (out->width < 1 || out->height < 1 || out->width > MAX_EDGE || out->height > MAX_EDGE)
         return "is larger than 16384 pixels";

@@ -74,6 +74,25 @@ static inline void sincos_turn(float u, float *s, float *c) {
     *c = (k + 1) & 2 ? -cc : cc;
 }
 
+/* 2^x, -126 <= x <= 126; l_exp2() of kernels/lanes.clh. */
+static inline float power_of_two(float x) {
+    const float k = nearbyintf(x), r = x - k;
+    const int32_t bits = ((int32_t)k + 127) << 23;
+    float scale, p = fmaf(r, 1.57567294e-4f, 1.34142698e-3f);
+    memcpy(&scale, &bits, sizeof scale);
+    p = fmaf(r, fmaf(r, fmaf(r, p, 9.61706415e-3f), 5.55027276e-2f), 0.240226552f);
+    return fmaf(r, fmaf(r, p, 0.693147242f), 1.0f) * scale;
+}
+
+/* A unit normal from 2 x snorm16; l_decode_normal() of kernels/scene.clh. */
+static inline vec3 decoded_normal(uint32_t code) {
+    const float x = (float)(int16_t)(code & 0xffffu) / 32767.0f, y = (float)(int16_t)(code >> 16) / 32767.0f;
+    const float ax = fabsf(x), ay = fabsf(y), z = 1.0f - ax - ay;
+    if (!(z < 0.0f))
+        return vec3_unit((vec3){x, y, z});
+    return vec3_unit((vec3){x < 0.0f ? ay - 1.0f : 1.0f - ay, y < 0.0f ? ax - 1.0f : 1.0f - ax, z});
+}
+
 static inline uint32_t pcg(uint32_t v) {
     const uint32_t state = v * 747796405u + 2891336453u;
     const uint32_t word = ((state >> ((state >> 28) + 4u)) ^ state) * 277803737u;

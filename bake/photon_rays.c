@@ -18,6 +18,7 @@ typedef struct query {
     vec3 origin, direction;
     float nearest; /* Embree's distance of the hit so far */
     uint32_t triangle;
+    uint32_t skip; /* a triangle that is not there, or VIT_NONE */
 } query;
 
 static float inverse(float d) {
@@ -58,7 +59,7 @@ static void accept_hit(const struct RTCFilterFunctionNArguments *f) {
     const bool further = ray->tfar > q->nearest || (!(ray->tfar < q->nearest) && triangle > q->triangle);
     if (f->valid[0] != -1)
         return;
-    if (further || !(plane_distance(q->s, q->origin, q->direction, triangle) > 0.0f) ||
+    if (further || triangle == q->skip || !(plane_distance(q->s, q->origin, q->direction, triangle) > 0.0f) ||
         !photon_opaque_at(q->s, q->origin, q->direction, triangle)) {
         f->valid[0] = 0;
         return;
@@ -67,8 +68,8 @@ static void accept_hit(const struct RTCFilterFunctionNArguments *f) {
     q->triangle = triangle;
 }
 
-uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance) {
-    query q = {.s = r->s, .origin = origin, .direction = direction, .nearest = INFINITY, .triangle = VIT_NONE};
+static uint32_t nearest_but(const photon_rays *r, uint32_t skip, vec3 origin, vec3 direction, float *distance) {
+    query q = {.s = r->s, .origin = origin, .direction = direction, .nearest = INFINITY, .triangle = VIT_NONE, .skip = skip};
     struct RTCRayHit h = {.ray = {.org_x = origin.x,
                                   .org_y = origin.y,
                                   .org_z = origin.z,
@@ -91,6 +92,18 @@ uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, 
     if (q.triangle != VIT_NONE)
         *distance = plane_distance(r->s, origin, direction, q.triangle);
     return q.triangle;
+}
+
+uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance) {
+    return nearest_but(r, VIT_NONE, origin, direction, distance);
+}
+
+bool photon_rays_covered(const photon_rays *r, uint32_t triangle, vec3 p, vec3 n) {
+    float t = 0.0f;
+    const uint32_t other = nearest_but(r, triangle, p, vec3_scale(n, -1.0f), &t);
+    if (other == VIT_NONE || t > 1.25f * r->s->ray_offset)
+        return false;
+    return other < triangle || !r->s->materials[r->s->attributes[other].material & VIT_MATERIAL_INDEX].lights;
 }
 
 /* For any hit: does this one count? Called only in scenes with cut-outs. */

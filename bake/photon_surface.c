@@ -1,6 +1,5 @@
 #include "photon_surface.h"
 
-
 /* Signed edge functions of a triangle: weights of its vertices, not normalised; ray_edges() of kernels/ray.clh. */
 static void edge_weights(const vit_triangle *t, vec3 origin, vec3 direction, float weight[3]) {
     vec3 across, up;
@@ -111,6 +110,16 @@ static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3]
     return vec3_times(plain, texture_color(s, texture, u, v, level, blend));
 }
 
+/* The interpolated normal on the face's side; as in surface_at() of kernels/surface.clh. */
+static vec3 normal_at(const vit_attributes *at, const float b[3], vec3 face) {
+    if (!(at->material & VIT_TRIANGLE_SMOOTH))
+        return face;
+    const vec3 n0 = decoded_normal(at->normal[0]), n1 = decoded_normal(at->normal[1]), n2 = decoded_normal(at->normal[2]);
+    const vec3 n = vec3_unit(vec3_along(vec3_along(vec3_scale(n0, b[0]), n1, b[1]), n2, b[2]));
+    const float side = vec3_dot(n, face);
+    return side == 0.0f ? face : vec3_scale(n, side < 0.0f ? -1.0f : 1.0f);
+}
+
 photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
                                    float cone, float b[3]) {
     const vit_triangle *t = s->triangles + triangle;
@@ -124,7 +133,11 @@ photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 dire
     const vec3 n = {t->nx, t->ny, t->nz};
     const float doubled_area = sqrtf(vec3_dot(n, n)), facing = vec3_dot(n, direction);
     photon_surface r;
-    r.face = vec3_scale(vec3_unit(n), facing > 0.0f ? -1.0f : 1.0f);
+    const vit_attributes *at = s->attributes + triangle;
+    r.back = facing > 0.0f;
+    r.face = vec3_scale(vec3_unit(n), r.back ? -1.0f : 1.0f);
+    r.normal = normal_at(at, b, r.face);
+    r.material = s->materials + (at->material & VIT_MATERIAL_INDEX);
     r.position = vec3_along(vec3_along(origin, direction, distance), r.face, s->ray_offset);
     r.albedo = albedo_at(s, triangle, b, doubled_area, cone * distance, fabsf(facing) / float_max(doubled_area, 1e-30f));
     return r;
@@ -135,22 +148,28 @@ photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direct
     return photon_surface_seen(s, origin, direction, distance, triangle, PHOTON_CONE, b);
 }
 
-bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {
+bool photon_opaque_place(const photon_scene *s, uint32_t triangle, const float b[3]) {
     const vit_attributes *at = s->attributes + triangle;
     const vit_material *m = s->materials + (at->material & VIT_MATERIAL_INDEX);
     if (!m->cutout || m->texture == VIT_NONE)
         return true;
-    float weight[3];
-    edge_weights(s->triangles + triangle, origin, direction, weight);
-    const float sum = weight[0] + weight[1] + weight[2], scale = sum == 0.0f ? 0.0f : 1.0f / sum;
-    const float b0 = weight[0] * scale, b1 = weight[1] * scale, b2 = weight[2] * scale;
     const vit_texture *texture = s->atlas->textures + m->texture;
     const vit_mip *mip = s->atlas->mips + texture->first_mip;
     const float u =
-        wrap(fmaf(b2, at->uv[2][0], fmaf(b1, at->uv[1][0], b0 * at->uv[0][0])), texture->wrap_u) * (float)mip->width;
+        wrap(fmaf(b[2], at->uv[2][0], fmaf(b[1], at->uv[1][0], b[0] * at->uv[0][0])), texture->wrap_u) * (float)mip->width;
     const float v =
-        wrap(fmaf(b2, at->uv[2][1], fmaf(b1, at->uv[1][1], b0 * at->uv[0][1])), texture->wrap_v) * (float)mip->height;
+        wrap(fmaf(b[2], at->uv[2][1], fmaf(b[1], at->uv[1][1], b[0] * at->uv[0][1])), texture->wrap_v) * (float)mip->height;
     const uint32_t x = (uint32_t)u < mip->width ? (uint32_t)u : mip->width - 1;
     const uint32_t y = (uint32_t)v < mip->height ? (uint32_t)v : mip->height - 1;
     return s->atlas->texels[mip->offset + y * mip->pitch + x] >> 31;
+}
+
+bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {
+    const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
+    if (!m->cutout)
+        return true;
+    float weight[3];
+    edge_weights(s->triangles + triangle, origin, direction, weight);
+    const float sum = weight[0] + weight[1] + weight[2], scale = sum == 0.0f ? 0.0f : 1.0f / sum;
+    return photon_opaque_place(s, triangle, (const float[]){weight[0] * scale, weight[1] * scale, weight[2] * scale});
 }

@@ -15,13 +15,16 @@ typedef struct photon_scene {
     const vit_material *materials;
     const atlas *atlas;
     float ray_offset, box_pad; /* of vit_scene, metres */
-    uint64_t effects;          /* of vit_scene: how textures are filtered */
+    uint64_t effects;          /* of vit_scene: how textures are filtered, and what shines */
 } photon_scene;
 
 typedef struct photon_surface {
     vec3 position; /* moved off the surface by ray_offset, to the side the ray came from */
     vec3 face;     /* unit geometric normal on that side */
+    vec3 normal;   /* unit interpolated normal on that side */
     vec3 albedo;
+    const vit_material *material;
+    bool back; /* the back of the triangle */
 } photon_surface;
 
 /* The surface `distance` metres along the unit direction, on `triangle`; as surface_at() of kernels/surface.clh. */
@@ -31,5 +34,7 @@ photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 dire
                                    float b[3]);
 /* False: the ray meets the triangle where its material is cut out; as ray_opaque() of kernels/ray.clh. */
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle);
+/* The same of the place of barycentric weights b. */
+bool photon_opaque_place(const photon_scene *s, uint32_t triangle, const float b[3]);
 
 #endif

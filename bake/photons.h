@@ -1,15 +1,21 @@
-/* photons.c: photons of still lights, traced once while baking. METHODS.md P, step 3. */
+/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. METHODS.md P,
+ * step 3. */
 #ifndef VIT_BAKE_PHOTONS_H
 #define VIT_BAKE_PHOTONS_H
 
 #include "atlas.h"
 #include "cells.h"
+#include "emitters.h"
+#include "sky.h"
 
 #define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
 
+/* A light, or all area lights together, or the sky. */
 typedef struct photons_light {
-    vit_light light; /* its record, the same in all frames; path_first and path_count do not count */
-    uint32_t paths;  /* 1..PHOTONS_MAX_PATHS; 0: none */
+    vit_light light;      /* its record, the same in all frames; path_first and path_count do not count */
+    uint32_t paths;       /* 1..PHOTONS_MAX_PATHS; 0: none */
+    const emitters *area; /* not NULL: the area lights, and `light` does not count */
+    const sky *sky;       /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere round the scene */
 } photons_light;
 
 /* `done` runs from 0 to 1. Called by the thread that called photons_bake(). */
@@ -22,7 +28,7 @@ typedef struct photons_input {
     const vit_material *materials; /* as in the pack */
     const atlas *atlas;
     float ray_offset, box_pad, radius; /* of vit_scene, metres */
-    uint64_t effects;                  /* of vit_scene */
+    uint64_t effects;                  /* of vit_scene: how textures are filtered, what shines, CAUSTICS */
     uint32_t bounces;                  /* of vit_scene */
     bool sequence;                     /* reflections follow a sequence rather than a hash: the effect SEQUENCE */
     uint32_t first_path;               /* number of the first path: those before it are traced while playing */

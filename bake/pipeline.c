@@ -37,7 +37,7 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
     if (status != VIT_OK)
         return status;
     progress_stage(p->progress, "sides that light can reach");
-    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, g, p->threads, step, p->progress, r, why);
+    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, p->scene.sky.light, g, p->threads, step, p->progress, r, why);
 }
 
 /* Imports the meshes; if they lie far from the origin, moves the scene there and imports them again. */
@@ -63,6 +63,15 @@ static vit_status import(pipeline *p, vit_text *why) {
     return VIT_OK;
 }
 
+static vit_status load_sky(pipeline *p, vit_text *why) {
+    const scene_sky *s = &p->scene.sky;
+    sky_constant(p->scene.background, &p->sky);
+    if (!s->image[0])
+        return VIT_OK;
+    progress_stage(p->progress, "sky");
+    return sky_load(s->image, s->scale, s->rotate, &p->sky, why);
+}
+
 vit_status pipeline_load(pipeline *p, vit_text *why) {
     progress_stage(p->progress, "import");
     vit_status status = import(p, why);
@@ -78,6 +87,8 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
         progress_stage(p->progress, "atlas");
         status = atlas_pack(&p->model, &p->atlas, why);
     }
+    if (status == VIT_OK)
+        status = load_sky(p, why);
     return status;
 }
 
@@ -85,6 +96,7 @@ void pipeline_free(pipeline *p) {
     if (p->kept)
         zones_kept_free(p->kept);
     free(p->kept);
+    sky_free(&p->sky);
     atlas_free(&p->atlas);
     geometry_free(&p->geometry);
     bvh_free(&p->bvh);
@@ -116,15 +128,28 @@ static vit_status choose_shape(const pipeline *p, const scene_quality *q, pipeli
     return make_shape(p, &c->model, &c->bvh, &c->geometry, &c->reach, why);
 }
 
+/* The sky as a source of photons. */
+static photons_light sky_source(const pipeline *p, const pipeline_packed *out) {
+    const plan *l = &out->plan;
+    return (photons_light){
+        .light = {.position = {l->sky_center[0], l->sky_center[1], l->sky_center[2]}, .spot_scale = l->sky_radius},
+        .paths = l->sky_paths,
+        .sky = &p->sky};
+}
+
 static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_text *why) {
-    photons_light *lights = calloc(out->tracks.light_count + 1u, sizeof *lights);
+    photons_light *lights = calloc(out->tracks.light_count + 2u, sizeof *lights);
     uint32_t count = 0;
     vit_status status = VIT_OK;
     if (!lights)
         return out_of_memory(why);
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
-            lights[count++] = (photons_light){out->tracks.lights[i], out->plan.baked_paths[i]};
+            lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i]};
+    if (out->plan.area_paths > 0)
+        lights[count++] = (photons_light){.paths = out->plan.area_paths, .area = &out->plan.area};
+    if (out->plan.sky_paths > 0)
+        lights[count++] = sky_source(p, out);
     if (count > 0) {
         progress_stage(p->progress, "photons of still lights");
         photons_input in = {.triangles = out->geometry->triangles,
@@ -199,6 +224,8 @@ static void point_sections(const pipeline *p, pipeline_packed *out) {
                                              [VIT_SECTION_ATLS] = p->atlas.texels,
                                              [VIT_SECTION_SIDE] = out->cells.sides,
                                              [VIT_SECTION_CELL] = out->cells.cells,
+                                             [VIT_SECTION_EMIT] = out->emitters,
+                                             [VIT_SECTION_SKYT] = p->sky.texels,
                                              [VIT_SECTION_PHOT] = out->photons,
                                              [VIT_SECTION_GOLD] = out->gold}};
 }
@@ -210,6 +237,7 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
         return out_of_memory(why);
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
+    const photons_light from_sky = sky_source(p, out);
     progress_stage(p->progress, "zones and areas");
     const zones_input in = {.geometry = out->geometry,
                             .triangles = out->model->triangles,
@@ -217,6 +245,8 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .atlas = &p->atlas,
                             .tracks = &out->tracks,
                             .gives_photons = gives,
+                            .area_lights = out->plan.area_paths > 0 ? &out->plan.area : NULL,
+                            .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
                             .scene = &out->plan.scene,
                             .zones = c->quality.zones,
                             .by_light = c->quality.light_zones,
@@ -230,6 +260,19 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
     out->plan.scene.cells = out->cells.count;
     free(gives);
     return status == VIT_OK && c->quality.zones ? trace_photons(p, out, why) : status;
+}
+
+/* The sets of points on area lights and of directions to the sky. */
+static vit_status place_emitters(const pipeline *p, pipeline_packed *out, vit_text *why) {
+    const vit_scene *s = &out->plan.scene;
+    out->emitters = malloc(((size_t)s->area_samples + s->sky_samples + 1) * VIT_PATTERNS * sizeof *out->emitters);
+    if (!out->emitters)
+        return out_of_memory(why);
+    if (s->area_samples > 0)
+        emitters_sets(&out->plan.area, s->area_samples, out->emitters);
+    if (s->sky_samples > 0)
+        sky_sets(&p->sky, s->sky_samples, out->emitters + (size_t)VIT_PATTERNS * s->area_samples);
+    return VIT_OK;
 }
 
 static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_packed *out, vit_text *why) {
@@ -252,8 +295,14 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
         status = bake_zones(p, c, out, why);
     point_sections(p, out);
     cut_frames(c, out);
+    in.reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *in.reached);
+    if (status == VIT_OK && !in.reached)
+        status = out_of_memory(why);
     if (status == VIT_OK)
         status = bounds_measure(&in, why);
+    if (status == VIT_OK)
+        effects_settle(&out->plan.scene, out->model, out->plan.materials, in.reached, &out->plan.effects);
+    free(in.reached);
     if (status == VIT_OK)
         status = pack_assemble(&out->sections, &out->bytes, &out->size, why);
     return status;
@@ -269,7 +318,9 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
     if (status == VIT_OK)
         status = choose_shape(p, &choice->quality, out, why);
     if (status == VIT_OK)
-        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &out->plan, why);
+        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &p->sky, p->threads, &out->plan, why);
+    if (status == VIT_OK)
+        status = place_emitters(p, out, why);
     if (status == VIT_OK)
         status = trace_photons(p, out, why);
     if (status == VIT_OK)
@@ -284,6 +335,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->bytes);
     free(packed->gold);
     free(packed->photons);
+    free(packed->emitters);
     cells_free(&packed->cells);
     plan_free(&packed->plan);
     geometry_free(&packed->coarse.geometry);

@@ -10,6 +10,7 @@
 #include "progress.h"
 #include "quantise.h"
 #include "reach.h"
+#include "sky.h"
 #include "tracks.h"
 #include "zones_kept.h"
 
@@ -27,6 +28,7 @@ typedef struct pipeline {
     geometry geometry;
     reach reach;
     atlas atlas;
+    sky sky;
     zones_kept *kept;
 } pipeline;
 
@@ -56,6 +58,7 @@ typedef struct pipeline_packed {
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
+    vit_emitter *emitters; /* section EMIT */
     vit_photon *photons;
     vit_gold *gold;
     pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */

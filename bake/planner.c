@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define PACKET 16u
+#define TWO_PI 6.283185307179586
 
 /* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost edges
  * among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc of the radius
@@ -31,16 +32,27 @@ static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
     return sum / frames;
 }
 
-static vit_status share_paths(const scene *s, tracks *t, plan *p, vit_text *why) {
-    double total = 0;
+static double sum_of(const double c[3]) {
+    return c[0] + c[1] + c[2];
+}
+
+static uint32_t share(const scene *s, double power, double total) {
+    return power > 0 ? (uint32_t)ceil(s->quality.photons * (power / total) / PACKET) * PACKET : 0;
+}
+
+static vit_status share_paths(const scene *s, tracks *t, const sky *round, plan *p, vit_text *why) {
+    const double area = sum_of(p->area.flux) / TWO_PI;
+    const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
+    double total = area + above;
     uint32_t first = 0;
     for (uint32_t i = 0; i < t->light_count; i++)
         total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
     if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0))
         return VIT_OK;
+    p->area_paths = share(s, area, total);
+    p->sky_paths = share(s, above, total);
     for (uint32_t i = 0; i < t->light_count; i++) {
-        double power = gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
-        uint32_t paths = power > 0 ? (uint32_t)ceil(s->quality.photons * (power / total) / PACKET) * PACKET : 0;
+        uint32_t paths = share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total);
         if (paths == 0)
             continue;
         if (t->still[i]) {
@@ -121,7 +133,7 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
 }
 
 static uint64_t effects_of_quality(const scene *s, const plan *p) {
-    bool baked = false;
+    bool baked = p->area_paths > 0 || p->sky_paths > 0;
     for (uint32_t i = 0; i < p->scene.lights; i++)
         baked |= p->baked_paths[i] > 0;
     if (p->scene.paths == 0 && !baked)
@@ -138,6 +150,16 @@ static uint64_t effects_of_quality(const scene *s, const plan *p) {
     e |= q->indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
     e |= q->indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
     return e;
+}
+
+static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
+    vit_scene *c = &p->scene;
+    c->sky_size = round->size;
+    if (p->area.count > 0)
+        c->area_samples = (uint32_t)s->quality.light_samples;
+    if (s->sky.light && sum_of(round->irradiance) > 0)
+        c->sky_samples = (uint32_t)s->quality.sky_samples;
+    return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) | (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
 }
 
 /* METHODS.md P (2.6): slices as deep as they are wide. */
@@ -163,8 +185,8 @@ static double lit_area(const reach *r) {
     return lit > 0 ? lit : r->area;
 }
 
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, plan *out,
-                     vit_text *why) {
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, const sky *round,
+                     unsigned threads, plan *out, vit_text *why) {
     memset(out, 0, sizeof *out);
     vit_scene *c = &out->scene;
     out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
@@ -201,7 +223,17 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     if (c->copies > 1)
         c->contrast = (float)s->quality.antialias_contrast;
     copies_place(c->copies, s->quality.tent, c->offset);
-    vit_status status = share_paths(s, t, out, why);
+    const photon_scene lit = {.triangles = g->triangles,
+                              .attributes = g->attributes,
+                              .triangle_count = m->triangles,
+                              .materials = out->materials,
+                              .atlas = a,
+                              .ray_offset = g->ray_offset,
+                              .box_pad = b->box_pad};
+    sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius);
+    vit_status status = emitters_find(&lit, threads, &out->area, why);
+    if (status == VIT_OK)
+        status = share_paths(s, t, round, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;
@@ -213,7 +245,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         c->chain = (uint32_t)s->quality.specular_depth;
         c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
     }
-    /* AREA_LIGHTS, SKY_IMAGE, SKY_LIGHT, and area_samples, sky_samples, sky_size: set with the sections EMIT and SKYT. */
+    c->effects |= plan_emitters(s, round, out);
     if (s->quality.sample_bits == 16) {
         c->effects |= VIT_BIT(SMALL_SAMPLES);
         plan_grid(m, c);
@@ -223,6 +255,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
             c->effects |= VIT_BIT(SMOOTH);
     if (r->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
+    effects_force(s, c, &out->effects);
     if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;
@@ -259,15 +292,6 @@ bool plan_leaves_area_out(const scene_quality *q) {
 void plan_free(plan *p) {
     free(p->materials);
     free(p->baked_paths);
+    emitters_free(&p->area);
     memset(p, 0, sizeof *p);
-}
-
-void plan_explain(const plan *p, plan_line_fn *line, void *user) {
-    char text[256];
-#define X(bit, name, macro, why)                                                                                               \
-    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_BIT(macro) ? "called for since" : "not called for, would be if", \
-             why);                                                                                                             \
-    line(user, text);
-    VIT_EFFECTS(X)
-#undef X
 }

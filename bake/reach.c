@@ -1,16 +1,20 @@
 /* Dark sides, by a small radiosity solution over the sides of triangles:
- *   1. rays from the lights, over all frames and directions, give each side its direct irradiance;
+ *   1. rays from the lights (points, directions, area lights, the sky), over all frames and directions, give each side its direct
+ *      irradiance;
  *   2. every side shoots GATHER_RAYS rays about its normal and notes which sides they find;
  *   3. E = direct + albedo * mean of E over what the rays found, repeated until light has gone everywhere (Jacobi);
  *   4. sides below the threshold ask again, with more rays of their own and rays towards the lights: triangles too small
  *      for 1 and 2 are not darkened by bad luck.
  *
  * Sums over threads are integers, everything else is computed by one thread in a fixed order: the result does not depend on
- * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray.
- * Every light that shines at all gives the same power; all together 1, and irradiance is in that unit a m2. */
+ * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray,
+ * mirrors and glass send light on, the sky shines alike all round. They themselves are never dark: no photon is stored there.
+ * Every light that shines at all gives the same power, area lights together and the sky as one each; all together 1, and
+ * irradiance is in that unit a m2. */
 #include "reach.h"
 #include "parallel.h"
 #include "reach_rays.h"
+#include "sky.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -28,9 +32,16 @@
 typedef struct search {
     const tracks *t;
     geometry *g;
+    const model *m;
     uint32_t frames, sides;
     ray_scene rays;
-    double power;        /* of all lights, mean over the frames, W */
+    uint32_t sources;    /* the tracks' lights, then the area lights if there are any, then the sky if it shines */
+    bool sky;
+    uint32_t *lamps;     /* triangles that are area lights */
+    double *lamp_sum;    /* weights of lamps 0 .. i, by their share of the area and of the number; 2 in all */
+    uint32_t lamp_count;
+    vec center;          /* of a sphere round the scene */
+    float radius;
     atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of all lights' power */
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
@@ -43,32 +54,88 @@ static double mean_intensity(const vit_light *l) {
     return ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) / 3.0;
 }
 
-static double solid_angle(const vit_light *l) {
-    return 6.283185307179586 * (l->kind == VIT_LIGHT_SPOT ? 1.0 - (double)l->cos_outer : 2.0);
+static vec plus(vec a, float s, vec b) {
+    return (vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
 
-/* Even over the light's sphere or cone. */
-static vec light_direction(const vit_light *l, float u, float v) {
-    const bool spot = l->kind == VIT_LIGHT_SPOT;
-    const float z = 1.0f - u * (spot ? 1.0f - l->cos_outer : 2.0f), r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), phi = 6.2831853f * v;
-    const vec n = spot ? (vec){l->direction[0], l->direction[1], l->direction[2]} : (vec){0.0f, 0.0f, 1.0f};
-    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a, x = r * cosf(phi), y = r * sinf(phi);
+static vec vec_of(const float p[3]) {
+    return (vec){p[0], p[1], p[2]};
+}
+
+/* x and y along axes across the unit vector n, z along it (Duff et al. 2017). */
+static vec about(vec n, float x, float y, float z) {
+    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
     return (vec){(1.0f + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
                  -sign * n.x * x - n.y * y + n.z * z};
+}
+
+/* Even over the cone cos >= least about n; the whole sphere for -1. */
+static vec cone_direction(vec n, float least, float u, float v) {
+    const float z = 1.0f - u * (1.0f - least), r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), phi = 6.2831853f * v;
+    return about(n, r * cosf(phi), r * sinf(phi), z);
+}
+
+static vec disc_point(vec center, vec n, float radius, float u, float v) {
+    const float r = radius * sqrtf(u), phi = 6.2831853f * v;
+    return plus(center, 1.0f, about(n, r * cosf(phi), r * sinf(phi), 0.0f));
+}
+
+static const vit_light *light_of(const search *s, uint32_t source, uint32_t frame) {
+    return s->t->lights + (size_t)frame * s->t->light_count + source;
+}
+
+static bool is_sky(const search *s, uint32_t source) {
+    return s->sky && source + 1 == s->sources;
+}
+
+static uint32_t choose_lamp(const search *s, float x) {
+    uint32_t low = 0, high = s->lamp_count - 1;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2;
+        if (s->lamp_sum[middle] > 2.0 * (double)x)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return s->lamps[low];
+}
+
+/* Ray `ray` of a source, in one frame. False: it does not shine, or not from there. */
+static bool leave(const search *s, uint32_t source, uint32_t frame, uint32_t ray, vec *origin, vec *direction) {
+    const float a = sequence(LIGHT_STREAM, ray, 0), b = sequence(LIGHT_STREAM, ray, 1), c = sequence(LIGHT_STREAM, ray, 2),
+                d = sequence(LIGHT_STREAM, ray, 3);
+    if (is_sky(s, source)) {
+        const vec from = cone_direction((vec){0.0f, 0.0f, 1.0f}, -1.0f, a, b);
+        *origin = disc_point(plus(s->center, s->radius, from), from, s->radius, c, d);
+        *direction = (vec){-from.x, -from.y, -from.z};
+        return true;
+    }
+    if (source == s->t->light_count) { /* no dimension is left for the lamp and its side */
+        const uint32_t side = 2 * choose_lamp(s, sequence(ray, 0, 0)) + (sequence(ray, 0, 1) < 0.5f);
+        *origin = side_point(s->g, side, a, b);
+        *direction = cosine_direction(side_normal(s->g, side), c, d);
+        return !ray_scene_covered(&s->rays, side, *origin);
+    }
+    const vit_light *l = light_of(s, source, frame);
+    *origin = vec_of(l->position);
+    if (l->kind == VIT_LIGHT_DIRECTIONAL) {
+        *direction = vec_of(l->direction);
+        *origin = disc_point(*origin, *direction, l->spot_scale, a, b);
+    } else {
+        const bool spot = l->kind == VIT_LIGHT_SPOT;
+        *direction = cone_direction(spot ? vec_of(l->direction) : (vec){0.0f, 0.0f, 1.0f}, spot ? l->cos_outer : -1.0f, a, b);
+    }
+    return mean_intensity(l) > 0.0;
 }
 
 /* Step 1: a ray of one light, from its place in one frame. */
 static void shoot_from_light(void *user, uint32_t ray) {
     search *s = user;
-    const uint32_t light = ray % s->t->light_count, frame = (uint32_t)((uint64_t)ray * s->frames / LIGHT_RAYS);
-    const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
-    const double power = mean_intensity(l) * solid_angle(l);
-    if (!(power > 0.0))
+    vec origin, direction;
+    if (!leave(s, ray % s->sources, (uint32_t)((uint64_t)ray * s->frames / LIGHT_RAYS), ray, &origin, &direction))
         return;
-    const vec origin = {l->position[0], l->position[1], l->position[2]};
-    const vec direction = light_direction(l, sequence(LIGHT_STREAM, ray, 0), sequence(LIGHT_STREAM, ray, 1));
     float distance = INFINITY;
-    const uint32_t side = ray_scene_cast(&s->rays, origin, direction, &distance);
+    const uint32_t side = ray_scene_follow(&s->rays, origin, direction, ray, &distance);
     const double share = 1.0 / LIGHT_RAYS; /* every light counts alike: a weak one may be all that a room has */
     if (side < s->sides)
         atomic_fetch_add_explicit(s->flux + side, (unsigned long long)(share * FLUX_ONE), memory_order_relaxed);
@@ -80,7 +147,7 @@ static uint32_t look(const search *s, uint32_t side, uint32_t i, float *distance
     const vec origin = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
     const vec direction = cosine_direction(side_normal(s->g, side), sequence(side, i, 2), sequence(side, i, 3));
     *distance = INFINITY;
-    return ray_scene_cast(&s->rays, origin, direction, distance);
+    return ray_scene_follow(&s->rays, origin, direction, side + i, distance);
 }
 
 /* Step 2. */
@@ -127,22 +194,37 @@ static uint32_t pick(float u, uint32_t count) {
     return i < count ? i : count - 1;
 }
 
-/* Direct irradiance of a side, estimated by shadow ray `i` to some light in some frame. */
-static float ask_light(const search *s, uint32_t side, uint32_t i) {
-    const uint32_t light = pick(sequence(side, i, 2), s->t->light_count);
-    const uint32_t frame = pick(sequence(side, i, 3), s->frames);
-    const vit_light *l = s->t->lights + (size_t)frame * s->t->light_count + light;
+/* Does some light in some frame shine on the side, by shadow ray `i`? */
+static bool ask_light(const search *s, uint32_t side, uint32_t i) {
+    const uint32_t source = pick(sequence(side, i, 2), s->sources), frame = pick(sequence(side, i, 3), s->frames);
     const vec n = side_normal(s->g, side), o = side_point(s->g, side, sequence(side, i, 0), sequence(side, i, 1));
-    const vec to = {l->position[0] - o.x, l->position[1] - o.y, l->position[2] - o.z};
+    const uint32_t other = side + i; /* for other numbers */
+    if (is_sky(s, source))
+        return ray_scene_passes(&s->rays, o, cosine_direction(n, sequence(other, 1, 0), sequence(other, 1, 1)), INFINITY);
+    const vit_light *l = source < s->t->light_count ? light_of(s, source, frame) : NULL;
+    if (l && !(mean_intensity(l) > 0.0))
+        return false;
+    vec at = {0.0f, 0.0f, 0.0f}, axis = {0.0f, 0.0f, 0.0f};
+    if (l) {
+        at = vec_of(l->position);
+        axis = vec_of(l->direction);
+    } else {
+        const uint32_t lamp = 2 * choose_lamp(s, sequence(other, 1, 0));
+        const vec front = side_point(s->g, lamp, sequence(other, 1, 1), sequence(other, 1, 2)), across = side_normal(s->g, lamp);
+        const bool before = (o.x - front.x) * across.x + (o.y - front.y) * across.y + (o.z - front.z) * across.z > 0.0f;
+        at = before ? front : plus(front, -2.0f * s->g->ray_offset, across);
+        if (ray_scene_covered(&s->rays, lamp + !before, at))
+            return false;
+    }
+    const vec to = {at.x - o.x, at.y - o.y, at.z - o.z};
     const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
-    float within = d;
-    const vec unit = {to.x / d, to.y / d, to.z / d};
-    const float cosine = unit.x * n.x + unit.y * n.y + unit.z * n.z;
-    const float axis = -(unit.x * l->direction[0] + unit.y * l->direction[1] + unit.z * l->direction[2]);
-    const bool in_cone = l->kind != VIT_LIGHT_SPOT || axis >= l->cos_outer;
-    if (!in_cone || !(cosine > 0.0f) || ray_scene_cast(&s->rays, o, unit, &within) != RAY_NOTHING)
-        return 0.0f;
-    return mean_intensity(l) > 0.0 ? cosine / (d * d) / (float)solid_angle(l) : 0.0f;
+    const bool parallel = l && l->kind == VIT_LIGHT_DIRECTIONAL;
+    const vec unit = parallel ? (vec){-axis.x, -axis.y, -axis.z} : (vec){to.x / d, to.y / d, to.z / d};
+    if (!(unit.x * n.x + unit.y * n.y + unit.z * n.z > 0.0f))
+        return false;
+    if (l && l->kind == VIT_LIGHT_SPOT && !(-(unit.x * axis.x + unit.y * axis.y + unit.z * axis.z) >= l->cos_outer))
+        return false;
+    return ray_scene_passes(&s->rays, o, unit, parallel ? INFINITY : d);
 }
 
 /* Step 4. A side that any light shines on is lit, however weakly; the threshold is for reflected light alone. What is enough
@@ -155,7 +237,7 @@ static void ask_again(void *user, uint32_t side) {
     if (s->direct[side] > 0.0f)
         found = fmaxf(found, s->threshold);
     for (uint32_t i = 0; i < ASK_LIGHTS && found < s->threshold; i++, rays++)
-        if (ask_light(s, side, i) > 0.0f)
+        if (ask_light(s, side, i))
             found = s->threshold;
     for (uint32_t i = 0; i < ASK_RAYS && fmaxf(found, reflected) < s->threshold; i++, rays++)
         reflected += REACH_ALBEDO / (float)ASK_RAYS * irradiance_of(s, look(s, side, GATHER_RAYS + i, &distance));
@@ -163,10 +245,17 @@ static void ask_again(void *user, uint32_t side) {
     atomic_fetch_add_explicit(&s->shot, rays, memory_order_relaxed);
 }
 
+/* Mirrors and glass hand light on, and are neither lit nor dark. */
+static bool is_matt(const search *s, uint32_t side) {
+    return side_material(s->m, s->g, side)->kind == VIT_MATTE;
+}
+
 /* Mean length of the ways between sides, m, each with the light that goes it; light that leaves the scene goes none. 0: all does. */
 static double mean_free_path(const search *s) {
     double sum = 0.0, light = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {
+        if (!is_matt(s, side))
+            continue;
         const double flux = triangle_area(s->g->triangles + side / 2) * (double)s->irradiance[side];
         uint32_t finds = 0;
         for (uint32_t i = 0; i < GATHER_RAYS; i++)
@@ -187,11 +276,11 @@ static void run_steps(search *s, unsigned threads, reach_progress_fn *progress, 
     solve(s, threads);
     double mean = 0.0, area = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {
-        const double a = triangle_area(s->g->triangles + side / 2);
+        const double a = is_matt(s, side) ? triangle_area(s->g->triangles + side / 2) : 0.0;
         mean += a * (double)s->irradiance[side];
         area += a;
     }
-    s->threshold = (float)((double)REACH_THRESHOLD * mean / area);
+    s->threshold = area > 0.0 ? (float)((double)REACH_THRESHOLD * mean / area) : 0.0f;
     if (progress)
         progress(user, 0.6);
     parallel_for(threads, s->sides, ask_again, s);
@@ -203,6 +292,8 @@ static void flag_dark_sides(const search *s, reach *out) {
     out->rays = atomic_load(&s->shot);
     for (uint32_t side = 0; side < s->sides; side++) {
         const double area = triangle_area(s->g->triangles + side / 2);
+        if (!is_matt(s, side))
+            continue;
         out->area += area;
         if (s->next_irradiance[side] >= s->threshold)
             continue;
@@ -212,12 +303,33 @@ static void flag_dark_sides(const search *s, reach *out) {
     }
 }
 
-/* Mean over the frames of all lights' power, W. */
-static double total_power(const tracks *t, uint32_t frames) {
-    double sum = 0.0;
+/* The tracks' lights shine in some frame. */
+static bool any_shines(const tracks *t, uint32_t frames) {
     for (size_t i = 0; i < (size_t)frames * t->light_count; i++)
-        sum += mean_intensity(t->lights + i) * solid_angle(t->lights + i);
-    return frames ? sum / frames : 0.0;
+        if (mean_intensity(t->lights + i) > 0.0)
+            return true;
+    return false;
+}
+
+/* False: out of memory. */
+static bool find_lamps(search *s) {
+    double area = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < s->m->triangles; i++)
+        if (material_lights(side_material(s->m, s->g, 2 * i))) {
+            area += triangle_area(s->g->triangles + i);
+            s->lamp_count++;
+        }
+    s->lamps = malloc((s->lamp_count + 1u) * sizeof *s->lamps);
+    s->lamp_sum = malloc((s->lamp_count + 1u) * sizeof *s->lamp_sum);
+    if (!s->lamps || !s->lamp_sum)
+        return false;
+    for (uint32_t i = 0, k = 0; k < s->lamp_count; i++)
+        if (material_lights(side_material(s->m, s->g, 2 * i))) {
+            sum += triangle_area(s->g->triangles + i) / area + 1.0 / s->lamp_count;
+            s->lamps[k] = i;
+            s->lamp_sum[k++] = sum;
+        }
+    return true;
 }
 
 static double seconds(void) {
@@ -244,17 +356,26 @@ static void release(search *s) {
     free(s->irradiance);
     free(s->next_irradiance);
     free(s->path);
+    free(s->lamps);
+    free(s->lamp_sum);
 }
 
-vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, geometry *g, unsigned threads,
+vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
                             reach_progress_fn *progress, void *user, reach *out, vit_text *why) {
     const double start = seconds();
     *out = (reach){0};
-    search s = {.t = t, .g = g, .frames = frames, .sides = 2 * m->triangles, .power = total_power(t, frames)};
-    if (!(s.power > 0.0))
-        return VIT_OK;
+    search s = {.t = t, .g = g, .m = m, .frames = frames, .sides = 2 * m->triangles, .sky = sky_light};
+    bool fine = find_lamps(&s);
+    s.sources = t->light_count + (s.lamp_count > 0) + sky_light;
+    float center[3];
+    sky_sphere(m->lo, m->hi, center, &s.radius);
+    s.center = vec_of(center);
     vit_status status = VIT_OK;
-    if (!allocate(&s) || !ray_scene_open(m, g, threads, &s.rays)) {
+    if (fine && !sky_light && s.lamp_count == 0 && !any_shines(t, frames)) {
+        release(&s);
+        return VIT_OK;
+    }
+    if (!fine || !allocate(&s) || !ray_scene_open(m, g, threads, &s.rays)) {
         snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");
         status = VIT_FAILED;
     } else {

@@ -6,13 +6,17 @@
 
 #if VIT_EMBREE == 4
 #include <embree4/rtcore.h>
+typedef struct RTCRayQueryContext embree_context;
 #else
 #include <embree3/rtcore.h>
+typedef struct RTCIntersectContext embree_context;
 #endif
 
 #define INSET 4.0f    /* ray offsets that starting points keep from a triangle's edges, if it is large enough */
 #define GRAZING 1e-3f /* a hit at a smaller cosine, or nearer to an edge (barycentric), tells no side */
 #define EDGE 1e-4f
+#define GLASS_MIRRORS 0.25f /* of the light that may pass: more than it does, but both ways are looked at */
+#define LONGEST 32u         /* mirrors and panes in a row */
 
 static vec scaled_sum(vec a, float s, vec b) {
     return (vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -57,6 +61,14 @@ vec side_normal(const geometry *g, uint32_t side) {
     return side & 1 ? (vec){-n.x, -n.y, -n.z} : n;
 }
 
+const model_material *side_material(const model *m, const geometry *g, uint32_t side) {
+    return m->materials + (g->attributes[side / 2].material & VIT_MATERIAL_INDEX);
+}
+
+bool material_lights(const model_material *m) {
+    return m->area_light && m->kind == VIT_MATTE && (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0);
+}
+
 static float distance(const float a[3], const float b[3]) {
     const vec d = scaled_sum(vec_of(a), -1.0f, vec_of(b));
     return sqrtf(dot(d, d));
@@ -87,6 +99,18 @@ vec cosine_direction(vec n, float u, float v) {
     return unit(scaled_sum(d, fmaxf(height, 0.02f), n)); /* not along its own surface */
 }
 
+/* A ray and the triangle that is not there for it. */
+typedef struct query {
+    embree_context context; /* first: Embree hands its address to the filter */
+    uint32_t skip;
+} query;
+
+static void skip_one(const struct RTCFilterFunctionNArguments *f) {
+    const query *q = (const query *)(const void *)f->context;
+    if (f->valid[0] == -1 && ((const struct RTCHit *)(const void *)f->hit)->primID == q->skip)
+        f->valid[0] = 0;
+}
+
 /* primID is the triangle; a cut-out one shrinks to a point, which no ray hits. */
 static bool add_triangles(const model *m, ray_scene *s) {
     RTCGeometry mesh = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -100,6 +124,7 @@ static bool add_triangles(const model *m, ray_scene *s) {
             index[3 * i + k] = 3 * i + (hole ? 0 : k);
     }
     if (index) {
+        rtcSetGeometryIntersectFilterFunction(mesh, skip_one);
         rtcCommitGeometry(mesh);
         rtcAttachGeometry(s->scene, mesh);
         rtcCommitScene(s->scene);
@@ -111,7 +136,7 @@ static bool add_triangles(const model *m, ray_scene *s) {
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out) {
     char config[32];
     snprintf(config, sizeof config, "threads=%u", threads);
-    *out = (ray_scene){.g = g, .device = rtcNewDevice(config)};
+    *out = (ray_scene){.g = g, .m = m, .device = rtcNewDevice(config)};
     if (!out->device)
         return false;
     out->scene = rtcNewScene(out->device);
@@ -131,7 +156,8 @@ void ray_scene_close(ray_scene *s) {
     *s = (ray_scene){0};
 }
 
-uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance) {
+static uint32_t cast_but(const ray_scene *s, uint32_t skip, vec origin, vec direction, float *distance) {
+    query q = {.skip = skip};
     struct RTCRayHit r = {.ray = {.org_x = origin.x,
                                   .org_y = origin.y,
                                   .org_z = origin.z,
@@ -142,11 +168,14 @@ uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *di
                                   .mask = ~0u},
                           .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
 #if VIT_EMBREE == 4
-    rtcIntersect1(s->scene, &r, NULL);
+    struct RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    rtcInitRayQueryContext(&q.context);
+    arguments.context = &q.context;
+    rtcIntersect1(s->scene, &r, &arguments);
 #else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(s->scene, &context, &r);
+    rtcInitIntersectContext(&q.context);
+    rtcIntersect1(s->scene, &q.context, &r);
 #endif
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return RAY_NOTHING;
@@ -155,4 +184,65 @@ uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *di
     if (fabsf(cosine) < GRAZING || fminf(r.hit.u, fminf(r.hit.v, 1.0f - r.hit.u - r.hit.v)) < EDGE)
         return RAY_UNSURE;
     return 2 * r.hit.primID + (cosine > 0.0f);
+}
+
+uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance) {
+    return cast_but(s, RAY_NOTHING, origin, direction, distance);
+}
+
+/* Where light goes at a mirror or glass with unit normal n on d's side. */
+static vec sent_on(const model_material *m, vec d, vec n, bool back, float chance) {
+    const float cosine = -dot(d, n), eta = back ? m->ior : 1.0f / m->ior, rest = 1.0f - eta * eta * (1.0f - cosine * cosine);
+    const bool mirrored = m->kind == VIT_MIRROR || (m->kind == VIT_GLASS && rest < 0.0f) || chance < GLASS_MIRRORS;
+    if (mirrored)
+        return unit(scaled_sum(d, 2.0f * cosine, n));
+    if (m->kind == VIT_THIN_GLASS)
+        return d;
+    const vec bent = {eta * d.x, eta * d.y, eta * d.z};
+    return unit(scaled_sum(bent, eta * cosine - sqrtf(rest), n));
+}
+
+uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_t chance, float *distance) {
+    float whole = 0.0f, way = *distance;
+    for (uint32_t i = 0; i < LONGEST; i++) {
+        const uint32_t side = ray_scene_cast(s, origin, direction, &way);
+        const bool found = side < 2 * s->m->triangles;
+        if (!found || side_material(s->m, s->g, side)->kind == VIT_MATTE) {
+            if (side != RAY_NOTHING)
+                *distance = whole + way;
+            return side;
+        }
+        const vec n = side_normal(s->g, side);
+        const vec on = sent_on(side_material(s->m, s->g, side), direction, n, side & 1, sequence(chance, i, 0));
+        origin = scaled_sum(scaled_sum(origin, way, direction), dot(on, n) > 0.0f ? s->g->ray_offset : -s->g->ray_offset, n);
+        direction = on;
+        whole += way;
+        way = INFINITY;
+    }
+    *distance = whole;
+    return RAY_UNSURE;
+}
+
+bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance) {
+    for (uint32_t i = 0; i < LONGEST; i++) {
+        float way = distance;
+        const uint32_t side = ray_scene_cast(s, p, direction, &way);
+        if (side == RAY_NOTHING)
+            return true;
+        if (side >= 2 * s->m->triangles || side_material(s->m, s->g, side)->kind < VIT_GLASS)
+            return false;
+        way += 2.0f * s->g->ray_offset;
+        p = scaled_sum(p, way, direction);
+        distance -= way;
+        if (!(distance > 0.0f))
+            return true;
+    }
+    return false;
+}
+
+bool ray_scene_covered(const ray_scene *s, uint32_t side, vec p) {
+    const vec n = side_normal(s->g, side);
+    float t = 1.25f * s->g->ray_offset;
+    const uint32_t other = cast_but(s, side / 2, p, (vec){-n.x, -n.y, -n.z}, &t);
+    return other < 2 * s->m->triangles && (other / 2 < side / 2 || !material_lights(side_material(s->m, s->g, other)));
 }

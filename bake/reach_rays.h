@@ -3,6 +3,7 @@
 #define VIT_BAKE_REACH_RAYS_H
 
 #include "bvh.h"
+#include <stdbool.h>
 
 #define RAY_NOTHING 0xffffffffu /* no side: the ray met nothing in reach */
 #define RAY_UNSURE 0xfffffffeu  /* it met something, but grazed it */
@@ -15,6 +16,7 @@ typedef struct ray_scene {
     struct RTCDeviceTy *device;
     struct RTCSceneTy *scene;
     const geometry *g;
+    const model *m;
 } ray_scene;
 
 /* Rays pass cut-out triangles as if they were not there. False: Embree fails; there is nothing to close. */
@@ -24,10 +26,20 @@ void ray_scene_close(ray_scene *s);
  * *distance becomes how far that is, and stays for RAY_NOTHING. */
 uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance);
 
+/* The same for light: mirrors and glass send it on, `chance` deciding where glass may do either, and the matt side that is found in the
+ * end counts; *distance is the whole way. RAY_UNSURE, too, if there is no end to it. */
+uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_t chance, float *distance);
+/* Does light get from p to what lies `distance` metres along the unit direction? Glass lets it pass. */
+bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance);
+/* Is the side covered by another face where p, a side_point(), stands before it? Faces of area lights with greater numbers do not cover. */
+bool ray_scene_covered(const ray_scene *s, uint32_t side, vec p);
+
 /* Dimension d (0..3) of point i of a well spread sequence of its own for each `stream`; 0 <= u < 1. */
 float sequence(uint32_t stream, uint32_t i, uint32_t d);
 double triangle_area(const vit_triangle *t);
 vec side_normal(const geometry *g, uint32_t side);
+const model_material *side_material(const model *m, const geometry *g, uint32_t side);
+bool material_lights(const model_material *m); /* its triangles are area lights */
 /* A point of the side for 0 <= u, v < 1, g->ray_offset above it. */
 vec side_point(const geometry *g, uint32_t side, float u, float v);
 /* A direction of a cosine distribution about n. */

@@ -10,8 +10,6 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_SIMD
 #define STBI_NO_STDIO
-#define STBI_NO_HDR
-#define STBI_NO_LINEAR
 #define STBI_NO_PSD
 #define STBI_NO_PIC
 #define STBI_NO_GIF

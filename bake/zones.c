@@ -1,4 +1,5 @@
 #include "zones.h"
+#include "photon_shine.h"
 #include "zones_parts.h"
 #include <float.h>
 #include <stdio.h>
@@ -139,6 +140,31 @@ typedef struct look {
     float (*weight)[2]; /* b1, b2 */
 } look;
 
+/* Mirrors and glass send rays on; at the first glass every second pixel looks through. */
+static uint32_t look_on(const zones *z, vec3 o, vec3 d, uint32_t pixel, photon_surface *s, float b[3]) {
+    const uint32_t most = z->in->scene->chain;
+    for (uint32_t k = 0;; k++) {
+        float t;
+        const uint32_t triangle = photon_rays_nearest(&z->rays, o, d, &t);
+        if (triangle == VIT_NONE)
+            return VIT_NONE;
+        *s = photon_surface_seen(&z->scene, o, d, t, triangle, 0.0f, b);
+        if (s->material->kind == VIT_MATTE)
+            return triangle;
+        if (k == most)
+            return VIT_NONE;
+        o = s->position;
+        if (s->material->kind == VIT_MIRROR) {
+            d = shine_mirrored(d, s->normal, s->face);
+            continue;
+        }
+        const shine_paths p = shine_at_glass(d, s->normal, s->face, s->back, s->material->kind == VIT_THIN_GLASS, s->material->ior);
+        const bool through = p.mirror < 1.0f && (k == 0 ? pixel % 2 == 0 : p.mirror <= 0.5f);
+        d = through ? p.refracted : p.mirrored;
+        o = through ? vec3_along(o, s->face, -2.0f * z->scene.ray_offset) : o;
+    }
+}
+
 static void look_once(void *user, uint32_t i) {
     look *l = user;
     const zones *z = l->z;
@@ -147,18 +173,19 @@ static void look_once(void *user, uint32_t i) {
     const vec3 o = vec3_load(c->eye);
     vec3 d = vec3_along(vec3_load(c->corner), vec3_load(c->right), (float)(x * l->step) + 0.5f);
     d = vec3_unit(vec3_along(d, vec3_load(c->down), (float)(y * l->step) + 0.5f));
-    float t;
-    const uint32_t triangle = photon_rays_nearest(&z->rays, o, d, &t);
+    float b[3];
+    photon_surface s;
+    const uint32_t triangle = look_on(z, o, d, x + y, &s, b);
     l->side[i] = VIT_NONE;
     if (triangle == VIT_NONE)
         return;
-    const vec3 n = side_face(z->g, 2 * triangle);
-    const uint32_t back = vec3_dot(n, d) > 0.0f;
-    float b[3];
-    (void)photon_surface_seen(&z->scene, o, d, t, triangle, 0.0f, b);
-    l->side[i] = 2 * triangle + back;
+    l->side[i] = 2 * triangle + s.back;
     l->weight[i][0] = b[1];
     l->weight[i][1] = b[2];
+}
+
+bool zones_lands(const zones *z, uint32_t triangle) {
+    return z->in->materials[z->g->attributes[triangle].material & VIT_MATERIAL_INDEX].kind == VIT_MATTE;
 }
 
 static uint32_t slot_of(uint64_t key, uint32_t room) {
@@ -265,7 +292,7 @@ static bool group_cells(zones *z) {
         const vec3 p = cells_center(z->c, z->g, i), n = side_face(z->g, side);
         const uint64_t key = zones_key(p, n, ZONES_COARSE * z->radius);
         z->patch_of[i] = z->receiver_of[i] = VIT_NONE;
-        if (side_is_dark(z->g, side))
+        if (side_is_dark(z->g, side) || !zones_lands(z, side / 2))
             continue;
         z->patch_of[i] = number_of(&patches, key);
         if (was_seen(z, key))
@@ -326,7 +353,8 @@ vit_status zones_bake(const zones_input *in, cells *out, zones_found *found, vit
                          .materials = in->materials,
                          .atlas = in->atlas,
                          .ray_offset = s->ray_offset,
-                         .box_pad = s->box_pad},
+                         .box_pad = s->box_pad,
+                         .effects = s->effects},
                .radius = s->radius,
                .flatten = s->flatten,
                .c = out,

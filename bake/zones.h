@@ -4,7 +4,7 @@
 #define VIT_BAKE_ZONES_H
 
 #include "atlas.h"
-#include "cells.h"
+#include "photons.h"
 #include "tracks.h"
 
 typedef struct zones_input {
@@ -14,7 +14,9 @@ typedef struct zones_input {
     const atlas *atlas;
     const tracks *tracks;      /* of all frames */
     const bool *gives_photons; /* a light */
-    const vit_scene *scene;    /* frames, width, height, bounces, radius, flatten, box_pad, ray_offset, lights */
+    const emitters *area_lights; /* that give photons, or NULL */
+    const photons_light *sky;  /* the same */
+    const vit_scene *scene;    /* frames, width, height, bounces, radius, flatten, box_pad, ray_offset, lights, effects */
     bool zones;                /* accept bits and zones; otherwise every cell accepts zone 0 */
     bool by_light;             /* unlike lit surfaces are kept apart too */
     bool areas;                /* effective areas; otherwise 1 */

@@ -90,6 +90,8 @@ uint32_t grid_align(grid *g, uint32_t width);
 
 /* Kernel (1 - d^2 / r^2) of a sample at p with normal n for a point at q; 0 outside. */
 float zones_kernel(const zones *z, vec3 p, vec3 n, vec3 q);
+/* Photons are stored on the triangle: it is no mirror and no glass. */
+bool zones_lands(const zones *z, uint32_t triangle);
 /* A key that is equal for places in one box, `edge` metres wide and a quarter of it deep, that face alike (6 directions). Never
  * 0. */
 uint64_t zones_key(vec3 p, vec3 n, float edge);

@@ -96,7 +96,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
     const uint32_t probes = s->frames < PILOT_FRAMES ? s->frames : PILOT_FRAMES;
     uint32_t paths = z->patch_count < PILOT_MOST / PILOT_A_PATCH ? z->patch_count * PILOT_A_PATCH : PILOT_MOST;
     paths = (paths < PILOT_LEAST ? PILOT_LEAST : paths) / probes;
-    photons_light *lights = calloc(s->lights + 1u, sizeof *lights);
+    photons_light *lights = calloc(s->lights + 2u, sizeof *lights);
     vit_status status = lights ? VIT_OK : VIT_FAILED;
     for (uint32_t f = 0; f < probes && status == VIT_OK; f++) {
         const vit_light *frame =
@@ -104,7 +104,11 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         uint32_t count = 0, found = 0;
         for (uint32_t i = 0; i < s->lights; i++)
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)
-                lights[count++] = (photons_light){frame[i], 0};
+                lights[count++] = (photons_light){.light = frame[i]};
+        if (z->in->area_lights)
+            lights[count++] = (photons_light){.area = z->in->area_lights};
+        if (z->in->sky)
+            lights[count++] = *z->in->sky;
         for (uint32_t i = 0; i < count; i++)
             lights[i].paths = paths / count > 0 ? paths / count : 1;
         photons_input in = {.triangles = z->g->triangles,
@@ -115,6 +119,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
                             .ray_offset = s->ray_offset,
                             .box_pad = s->box_pad,
                             .radius = 1.0f,
+                            .effects = s->effects,
                             .bounces = s->bounces,
                             .first_path = PILOT_FIRST + f * PILOT_MOST,
                             .cells = z->c,
@@ -135,7 +140,7 @@ typedef struct opening {
     float far; /* metres */
 } opening;
 
-/* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene. */
+/* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene, or meets a mirror or glass. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     zones *z = o->z;
@@ -150,7 +155,7 @@ static void look_out(void *user, uint32_t i) {
         const float r = sqrtf(u), h = sqrtf(float_max(1.0f - u, 4e-4f)); /* not along its own surface */
         const vec3 d = vec3_unit(vec3_along(vec3_along(vec3_scale(p->n, h), ax, r * c), ay, r * s));
         const uint32_t triangle = photon_rays_nearest(&z->rays, from, d, &t);
-        if (triangle == VIT_NONE)
+        if (triangle == VIT_NONE || !zones_lands(z, triangle))
             return;
         const uint32_t side = 2 * triangle + (vec3_dot(side_face(z->g, 2 * triangle), d) > 0.0f);
         if (t > o->far && !side_is_dark(z->g, side))

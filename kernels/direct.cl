@@ -24,6 +24,16 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
     return l_div(window * window, d2);
 }
 
+/* The same times d2: what a range leaves of a photon's power. Exactly 1 without a range. */
+static inline lf light_left(global const vit_light *light, lf d2)
+{
+    lf q = d2 * light->inv_range2;
+    if (light->falloff == VIT_FALLOFF_WINDOW)
+        return l_max(1.0f - q, L_F(0)) * d2;
+    lf window = l_max(1.0f - q * q, L_F(0));
+    return window * window;
+}
+
 /* View samples as lights see them. */
 typedef struct lit_sample {
     li hit;
@@ -123,6 +133,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global c
 {
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
+    float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
     li at = (((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1)) * (int)points * stride;
     for (uint i = 0; i < points; i++, at += stride) {
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
@@ -130,14 +141,14 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global c
         if (sky)
             e = l_max(lv3_dot(s->n, l), L_F(0));
         else {
-            /* The part of the surface that the point stands for, as a disc on the way: never more than half a sphere of it. */
+            /* The part of the surface that the point stands for, as a disc on the way: never more than half a sphere of it. The point lies off
+             * the surface, by ray_offset: the light itself does not stand in the way. */
             lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
             to = lv3_sub(to, s->p);
-            lf d2 = l_max(lv3_dot(to, to), L_F(1e-30f));
+            lf d2 = l_max(lv3_dot(to, to), L_F(least2));
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
             e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), d2 + L_GATHER(lf, p + 3, at));
-            d *= 0.9999f; /* not the light itself */
         }
         li lit = s->hit & L_GT(e, L_F(0));
         if (!l_any(lit))

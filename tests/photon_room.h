@@ -57,6 +57,34 @@ static inline void room_quad(room *r, const float corner[3], const float u[3], c
     r->model_materials[material].triangles += 2;
 }
 
+/* A ball of triangles with the ball's normals at their vertices, facing outwards. */
+static inline void room_ball(room *r, const float center[3], float radius, uint32_t material) {
+    enum { ROUND = 16, DOWN = 8 };
+    model *m = &r->m;
+    for (int j = 0; j < DOWN; j++)
+        for (int i = 0; i < 2 * ROUND; i++) { /* two triangles a quad, one at the poles */
+            if ((j == 0 && i % 2 == 0) || (j == DOWN - 1 && i % 2))
+                continue;
+            const int column[2][3] = {{0, 1, 1}, {0, 1, 0}}, row[2][3] = {{0, 0, 1}, {0, 1, 1}};
+            assert_in_range(m->vertices, 0, 4 * ROOM_QUADS - 3);
+            assert_in_range(m->triangles, 0, 2 * ROOM_QUADS - 1);
+            for (int k = 0; k < 3; k++) {
+                const int across = i / 2 + column[i % 2][k], down = j + row[i % 2][k];
+                const float a = (float)(across % ROUND) * (6.28318531f / ROUND), b = (float)down * (3.14159265f / DOWN);
+                const float ring = down == 0 || down == DOWN ? 0.0f : sinf(b);
+                const float n[3] = {ring * cosf(a), down == 0 ? 1.0f : down == DOWN ? -1.0f : cosf(b), ring * sinf(a)};
+                const uint32_t v = m->vertices++;
+                for (uint32_t c = 0; c < 3; c++) {
+                    m->normal[3 * v + c] = n[c];
+                    m->position[3 * v + c] = center[c] + radius * n[c];
+                }
+                m->index[3 * m->triangles + (uint32_t)k] = v;
+            }
+            m->material[m->triangles++] = material;
+            r->model_materials[material].triangles++;
+        }
+}
+
 /* Wall w: axis w / 2, at -1 or +1, facing inwards. The floor's u runs along x, its v along -z. */
 static inline void room_wall(room *r, int w) {
     static const float corners[WALLS][3] = {{-1, -1, 1}, {1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, -1, -1}, {1, -1, 1}};
@@ -113,13 +141,13 @@ static inline void room_texture(room *r, uint32_t material, int i, uint8_t left,
 }
 
 static inline photons_light room_point_light(float x, float y, float z, uint32_t paths) {
-    return (photons_light){{.position = {x, y, z},
-                            .kind = VIT_LIGHT_POINT,
-                            .direction = {0, -1, 0},
-                            .cos_outer = -1.0f,
-                            .intensity = {1.0f, 2.0f, 3.0f},
-                            .spot_offset = 1.0f},
-                           paths};
+    return (photons_light){.light = {.position = {x, y, z},
+                                     .kind = VIT_LIGHT_POINT,
+                                     .direction = {0, -1, 0},
+                                     .cos_outer = -1.0f,
+                                     .intensity = {1.0f, 2.0f, 3.0f},
+                                     .spot_offset = 1.0f},
+                           .paths = paths};
 }
 
 /* Bakes what photons need. The materials are those that the planner would write. */
@@ -141,6 +169,7 @@ static inline void room_finish(room *r, uint32_t lights, uint32_t bounces) {
                             .ray_offset = r->g.ray_offset,
                             .box_pad = r->b.box_pad,
                             .radius = 0.25f,
+                            .effects = VIT_BIT(RANGE),
                             .bounces = bounces,
                             .lights = r->lights,
                             .light_count = lights};

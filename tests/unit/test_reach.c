@@ -101,7 +101,7 @@ static void search(fixture *f, unsigned threads) {
     bvh_free(&f->b);
     geometry_free(&f->g);
     if (bvh_build(&f->m, 1, &f->b, &why) != VIT_OK || geometry_pack(&f->m, &f->b, &f->g, &why) != VIT_OK ||
-        reach_dark_sides(&f->m, &t, f->frames, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
+        reach_dark_sides(&f->m, &t, f->frames, false, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
         fail_msg("%s", why.text);
     for (uint32_t i = 0; i < f->m.triangles; i++)
         f->flags[f->b.order[i]] = f->g.attributes[i].material & (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);

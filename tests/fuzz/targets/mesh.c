@@ -47,15 +47,15 @@ static vit_status make_shape(bake *k, vit_text *why) {
     for (uint32_t i = 0; status == VIT_OK && i < 2 * k->m.triangles; i++)
         k->r.area += (double)side_area(&k->g, i); /* for the radius */
     if (status == VIT_OK && k->whole)
-        status = reach_dark_sides(&k->m, &k->t, 1, &k->g, 1, NULL, NULL, &k->r, why);
+        status = reach_dark_sides(&k->m, &k->t, 1, false, &k->g, 1, NULL, NULL, &k->r, why);
     if (status == VIT_OK)
         status = atlas_pack(&k->m, &k->a, why);
-    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &k->p, why) : status;
+    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const sky){0}, 1, &k->p, why) : status;
 }
 
 static vit_status make_photons(bake *k, vit_text *why) {
     vit_scene *s = &k->p.scene;
-    const photons_light light = {k->t.lights[0], k->p.baked_paths[0]};
+    const photons_light light = {.light = k->t.lights[0], .paths = k->p.baked_paths[0]};
     const photons_input in = {.triangles = k->g.triangles,
                               .attributes = k->g.attributes,
                               .triangle_count = k->m.triangles,
