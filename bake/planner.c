@@ -256,6 +256,8 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     if (r->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
     effects_force(s, c, &out->effects);
+    out->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? out->area_paths : 0;
+    out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
     if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;

@@ -46,7 +46,7 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(ANTIALIAS, LAMP, "", "", "antialias = 4;")                                                                               \
     X(AREA_LIGHTS, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = true;", "", "light_samples = 4;")                           \
     X(SKY_LIGHT, LAMP, "", "background = [0.3, 0.4, 0.5]; sky: { light = true; };", "sky_samples = 4;")                        \
-    X(SKY_IMAGE, LAMP, "", "sky: { image = \"holes.tga\"; light = false; };", "")
+    X(SKY_IMAGE, LAMP, "", "sky: { image = \"sky.tga\"; light = false; };", "")
 
 static const struct {
     const char *name;
@@ -71,6 +71,14 @@ static void bake(scene_lab *l, const char *lights, const char *thing, const char
     test_packs_holes(holes);
     f = scene_lab_create(l, "holes.tga");
     assert_int_equal(fwrite(holes, 1, sizeof holes, f), sizeof holes);
+    (void)fclose(f);
+    unsigned char sky[HOLES_HEADER + 16 * 8 * 4]; /* twice as wide as high */
+    memcpy(sky, holes, HOLES_HEADER);
+    sky[12] = 16;
+    for (size_t i = HOLES_HEADER; i < sizeof sky; i++)
+        sky[i] = (unsigned char)(i * 7);
+    f = scene_lab_create(l, "sky.tga");
+    assert_int_equal(fwrite(sky, 1, sizeof sky, f), sizeof sky);
     (void)fclose(f);
     f = scene_lab_create(l, "stage.cfg");
     (void)fprintf(f,
