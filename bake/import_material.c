@@ -5,12 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEFAULT_EXPONENT 50.0f /* of a lobe, and index of glass, where the scene file says neither */
-#define DEFAULT_IOR 1.5f
-
-/* Keys of Assimp's materials are macros of three arguments: key, type, index. */
-static bool get_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out,
-                       unsigned count) {
+bool import_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count) {
     float values[16];
     unsigned got = sizeof values / sizeof *values;
     if (aiGetMaterialFloatArray(ai, key, type, index, values, &got) != aiReturn_SUCCESS || got < count)
@@ -19,7 +14,7 @@ static bool get_floats(const struct aiMaterial *ai, const char *key, unsigned ty
     return true;
 }
 
-static float clamp(float value, float most) {
+float import_clamp(float value, float most) {
     return value > 0.0f ? (value < most ? value : most) : 0.0f; /* NaN is 0 */
 }
 
@@ -39,7 +34,7 @@ static uint32_t wrap_of(enum aiTextureMapMode mode) {
  * extension's matrix, offset * rotation * scale, which is meant for v down as ours is. */
 static void read_transform(material_use *use, const struct aiMaterial *ai, enum aiTextureType type) {
     float t[5]; /* translation x, y, scaling x, y, rotation: aiUVTransform */
-    if (!get_floats(ai, _AI_MATKEY_UVTRANSFORM_BASE, type, 0, t, 5))
+    if (!import_floats(ai, _AI_MATKEY_UVTRANSFORM_BASE, type, 0, t, 5))
         return;
     const double rotation = -(double)t[4], sx = (double)t[2], sy = (double)t[3];
     const double s = sin(rotation), c = cos(rotation);
@@ -72,27 +67,26 @@ static void read_texture(const importer *im, material_use *use, const struct aiM
     }
 }
 
-/* Diffuse reflectance. A metal keeps its base colour as albedo: the product has no specular reflection yet, and base colour
- * * (1 - metallic) would make it black. */
+/* Diffuse reflectance, before import_shine() has told what of it is not diffuse. */
 static void read_color(importer *im, material_use *use, const struct aiMaterial *ai) {
     float color[4] = {0.8f, 0.8f, 0.8f, 1.0f}, gloss;
     /* In glTF's specular-glossiness extension the base colour is a placeholder. */
-    const bool glossy = get_floats(ai, AI_MATKEY_GLOSSINESS_FACTOR, &gloss, 1);
-    if (glossy || !get_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
-        (void)get_floats(ai, AI_MATKEY_COLOR_DIFFUSE, color, 3);
+    const bool glossy = import_floats(ai, AI_MATKEY_GLOSSINESS_FACTOR, &gloss, 1);
+    if (glossy || !import_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
+        (void)import_floats(ai, AI_MATKEY_COLOR_DIFFUSE, color, 3);
     if (use->image[0] && color[0] == 0.0f && color[1] == 0.0f && color[2] == 0.0f) {
         import_warn(im, "material '%.100s': black times a texture; the texture alone is used", use->m.name);
         color[0] = color[1] = color[2] = 1.0f;
     }
     for (int i = 0; i < 3; i++)
-        use->m.albedo[i] = clamp(color[i] * use->tint[i], VIT_MAX_ALBEDO);
+        use->m.albedo[i] = import_clamp(color[i] * use->tint[i], VIT_MAX_ALBEDO);
 }
 
 static void read_emission(importer *im, material_use *use, const struct aiMaterial *ai) {
     struct aiString path;
     float color[3] = {0.0f, 0.0f, 0.0f}, strength = 1.0f;
-    (void)get_floats(ai, AI_MATKEY_COLOR_EMISSIVE, color, 3);
-    (void)get_floats(ai, AI_MATKEY_EMISSIVE_INTENSITY, &strength, 1);
+    (void)import_floats(ai, AI_MATKEY_COLOR_EMISSIVE, color, 3);
+    (void)import_floats(ai, AI_MATKEY_EMISSIVE_INTENSITY, &strength, 1);
     const bool black = !(color[0] > 0.0f || color[1] > 0.0f || color[2] > 0.0f);
     if (!black &&
         aiGetMaterialTexture(ai, aiTextureType_EMISSIVE, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) == aiReturn_SUCCESS) {
@@ -100,7 +94,7 @@ static void read_emission(importer *im, material_use *use, const struct aiMateri
         return;
     }
     for (int i = 0; i < 3; i++)
-        use->m.emission[i] = clamp(color[i] * strength, 1e9f);
+        use->m.emission[i] = import_clamp(color[i] * strength, 1e9f);
 }
 
 /* glTF: alphaMode says what alpha means. MASK cuts out; BLEND, which is not simulated, becomes a cut-out or a hole. */
@@ -108,22 +102,22 @@ static void read_alpha_gltf(material_use *use, const struct aiMaterial *ai) {
     struct aiString mode = {.length = 0};
     float alpha = 1.0f, cutoff = 0.5f;
     (void)aiGetMaterialString(ai, AI_MATKEY_GLTF_ALPHAMODE, &mode);
-    (void)get_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
+    (void)import_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
     const bool mask = !strcmp(mode.data, "MASK");
     if (!mask && strcmp(mode.data, "BLEND") != 0)
         return;
     if (mask)
-        (void)get_floats(ai, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff, 1);
-    use->m.alpha = clamp(alpha, 1.0f);
-    use->m.cutoff = clamp(cutoff, 1.0f);
+        (void)import_floats(ai, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff, 1);
+    use->m.alpha = import_clamp(alpha, 1.0f);
+    use->m.cutoff = import_clamp(cutoff, 1.0f);
 }
 
 /* OBJ and the rest: d is one number for all of it, map_d an image that has to be the colour texture's own alpha. */
 static void read_alpha_other(importer *im, material_use *use, const struct aiMaterial *ai) {
     struct aiString path;
     float alpha = 1.0f;
-    (void)get_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
-    alpha = clamp(alpha, 1.0f);
+    (void)import_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
+    alpha = import_clamp(alpha, 1.0f);
     const bool mapped =
         aiGetMaterialTexture(ai, aiTextureType_OPACITY, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) == aiReturn_SUCCESS;
     if (mapped && strcmp(path.data, use->image) != 0)
@@ -135,66 +129,6 @@ static void read_alpha_other(importer *im, material_use *use, const struct aiMat
     }
 }
 
-/* A kind that the mesh did not have starts with that kind's defaults. */
-static void change_kind(model_material *m, int kind) {
-    const bool shines = kind != VIT_MATTE, glass = kind == VIT_GLASS || kind == VIT_THIN_GLASS,
-               was = m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS;
-    if (m->kind == (uint32_t)kind)
-        return;
-    for (int i = 0; i < 3; i++) {
-        if (!glass || !was)
-            m->specular[i] = shines ? 1.0f : 0.0f;
-        if (kind != VIT_GLASS)
-            m->absorption[i] = 0.0f;
-        if (shines)
-            m->emission[i] = 0.0f;
-    }
-    m->exponent = 1.0f;
-    m->ior = !glass ? 1.0f : was ? m->ior : DEFAULT_IOR;
-    m->kind = (uint32_t)kind;
-}
-
-static void override_shine(importer *im, model_material *m, const scene_material *o) {
-    if (o->has_kind)
-        change_kind(m, o->kind);
-    const bool glass = m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS, matt = m->kind == VIT_MATTE;
-    const bool lobe = m->specular[0] > 0 || m->specular[1] > 0 || m->specular[2] > 0;
-    for (int i = 0; i < 3 && o->has_specular; i++)
-        m->specular[i] = (float)o->specular[i];
-    for (int i = 0; i < 3 && o->has_absorption && m->kind == VIT_GLASS; i++)
-        m->absorption[i] = (float)o->absorption[i];
-    if (o->has_exponent && matt)
-        m->exponent = (float)o->exponent;
-    else if (o->has_specular && matt && !lobe)
-        m->exponent = DEFAULT_EXPONENT;
-    if (o->has_ior && glass)
-        m->ior = (float)o->ior;
-    /* A kind that the scene file states has been checked there. */
-    if ((o->has_ior && !glass) || (o->has_absorption && m->kind != VIT_GLASS) ||
-        ((o->has_color || o->has_emission || o->has_exponent) && !matt))
-        import_warn(im, "line %d: material '%.100s': a setting does nothing for the kind of material that the mesh makes it",
-                    o->line, o->name);
-}
-
-/* What a material must hold whatever it is made from: no more reflected than arrives, and nothing that its kind has no use for.
- */
-static void settle_shine(model_material *m) {
-    float most = 0.0f;
-    for (int i = 0; i < 3; i++) {
-        if (m->kind != VIT_MATTE)
-            m->albedo[i] = m->emission[i] = 0.0f;
-        most = fmaxf(most, m->albedo[i] + m->specular[i]);
-    }
-    const bool lobe = m->specular[0] > 0 || m->specular[1] > 0 || m->specular[2] > 0;
-    if (m->kind != VIT_MATTE || !lobe)
-        m->exponent = 1.0f;
-    else if (most > 1.0f)
-        for (int i = 0; i < 3; i++) { /* hues stay; rounded down */
-            m->albedo[i] *= (1.0f - 0x1p-22f) / most;
-            m->specular[i] *= (1.0f - 0x1p-22f) / most;
-        }
-}
-
 /* What the scene file says beats what the mesh says. */
 static void apply_override(importer *im, material_use *use) {
     for (int i = 0; i < im->s->material_count; i++) {
@@ -203,10 +137,10 @@ static void apply_override(importer *im, material_use *use) {
             continue;
         im->override_used[i] = true;
         for (int k = 0; k < 3 && o->has_color; k++)
-            use->m.albedo[k] = clamp((float)o->color[k], VIT_MAX_ALBEDO);
+            use->m.albedo[k] = import_clamp((float)o->color[k], VIT_MAX_ALBEDO);
         for (int k = 0; k < 3 && o->has_emission; k++)
             use->m.emission[k] = (float)o->emission[k];
-        override_shine(im, &use->m, o);
+        import_override_shine(im, &use->m, o);
         if (o->has_area_light)
             use->m.area_light = o->area_light;
         if (o->has_cutoff)
@@ -245,8 +179,10 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
         read_alpha_gltf(*use, ai);
     else
         read_alpha_other(im, *use, ai);
+    if (!import_shine(im, *use, ai))
+        return false;
     apply_override(im, *use);
-    settle_shine(&(*use)->m);
+    import_settle_shine(&(*use)->m);
     /* The texture's alpha is at most 1: below the cutoff without it, below with it. */
     (*use)->hole = (*use)->m.alpha < (*use)->m.cutoff;
     return true;
@@ -263,7 +199,8 @@ static bool has_alpha(const model_image *image, float factor, float cutoff) {
 bool import_material_index(importer *im, material_use *use, uint32_t *index) {
     model *m = im->m;
     if (use->index < 0) {
-        if (use->image[0] && !import_texture(im, use->image, use->image_resolved, use->m.name, &use->m.image))
+        const bool seen = use->m.albedo[0] > 0 || use->m.albedo[1] > 0 || use->m.albedo[2] > 0 || use->m.cutoff > 0;
+        if (use->image[0] && seen && !import_texture(im, use->image, use->image_resolved, use->m.name, &use->m.image))
             return false;
         /* Without a hole there is no cut-out to pay for. */
         if (use->m.image < 0 || !has_alpha(&m->images[use->m.image], use->m.alpha, use->m.cutoff))

@@ -7,16 +7,15 @@
 #include <sys/stat.h>
 
 enum { MAX_EDGE = 16384, MAX_BYTES = 1 << 30 };
-/* Texels that a byte of an image file can stand for: deflate's 1032 to 1, a bit a texel. A file that claims more is cut short, and the
- * decoder would fill gigabytes for it. */
+/* Texels that a byte of an image file can stand for: deflate's 1032 to 1, a bit a texel. A file that claims more is cut short,
+ * and the decoder would fill gigabytes for it. */
 #define TEXELS_A_BYTE (8 * 1032)
 #define MAX_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
 
-/* A missing or broken texture: an error if strict, else a warning and the plain colour. */
-static bool without(importer *im, const char *material, const char *name, const char *what) {
+bool import_without(importer *im, const char *material, const char *name, const char *what, const char *instead) {
     if (im->strict)
         return import_fail(im, "material '%.100s': texture '%.200s' %s", material, name, what);
-    import_warn(im, "material '%.100s': texture '%.200s' %s; its plain colour is used", material, name, what);
+    import_warn(im, "material '%.100s': texture '%.200s' %s; %s", material, name, what, instead);
     return true;
 }
 
@@ -140,23 +139,38 @@ static const char *load(const importer *im, int embedded, model_image *out) {
     return wrong;
 }
 
+/* Where an image comes from: its name in the model in `found`, and its embedded index or -1. */
+static bool locate(const importer *im, const char *name, bool resolved, int *embedded, char found[SCENE_PATH]) {
+    *embedded = resolved ? -1 : embedded_index(im, name);
+    if (resolved)
+        (void)snprintf(found, SCENE_PATH, "%s", name);
+    else if (*embedded >= 0)
+        (void)snprintf(found, SCENE_PATH, "%.*s#%d", SCENE_PATH - 16, im->file, *embedded);
+    else
+        return resolve(im, name, found);
+    return true;
+}
+
+const char *import_image(const importer *im, const char *name, bool resolved, model_image *out) {
+    int embedded;
+    *out = (model_image){0};
+    return locate(im, name, resolved, &embedded, out->name) ? load(im, embedded, out) : "is missing";
+}
+
 bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image) {
+    static const char plain[] = "its plain colour is used";
     model *m = im->m;
     model_image loaded = {0};
-    const int embedded = resolved ? -1 : embedded_index(im, name);
+    int embedded;
     *image = -1;
-    if (resolved)
-        (void)snprintf(loaded.name, sizeof loaded.name, "%s", name);
-    else if (embedded >= 0)
-        (void)snprintf(loaded.name, sizeof loaded.name, "%.*s#%d", SCENE_PATH - 16, im->file, embedded);
-    else if (!resolve(im, name, loaded.name))
-        return without(im, material, name, "is missing");
+    if (!locate(im, name, resolved, &embedded, loaded.name))
+        return import_without(im, material, name, "is missing", plain);
     *image = find_image(m, loaded.name);
     if (*image >= 0)
         return true;
     const char *wrong = load(im, embedded, &loaded);
     if (wrong)
-        return without(im, material, name, wrong);
+        return import_without(im, material, name, wrong, plain);
     im->texels += (uint64_t)loaded.width * (uint64_t)loaded.height;
     if (im->texels > MAX_TEXELS ||
         !import_room(im, &m->images, &im->image_room, (size_t)m->image_count + 1, sizeof *m->images)) {

@@ -4,6 +4,7 @@
 
 #include "model.h"
 #include "vitrine_pack.h"
+#include <assimp/material.h>
 #include <assimp/scene.h>
 
 /* One mesh file being read. */
@@ -26,6 +27,9 @@ typedef struct importer {
     uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
     uint64_t bad_polygon;                  /* polygons dropped for an index or too many corners */
     bool warned_colors;
+    bool shine_known, shine_is_default; /* MTL: whether all materials have the same Ks and Ns */
+    struct texture_mean *means;         /* that were asked for, of this file */
+    size_t mean_count, mean_room;
 } importer;
 
 /* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
@@ -69,7 +73,30 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
 /* Loads the use's image and appends its material to the model, on first call. */
 bool import_material_index(importer *im, material_use *use, uint32_t *index);
 
-/* import_texture.c: image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
+/* import_material.c: of Assimp's material: `count` floats, if it has as many; keys are macros of three arguments, key, type, index. */
+bool import_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count);
+float import_clamp(float value, float most); /* to 0..most; NaN is 0 */
+
+/* import_shine.c: kind, lobe, glass and what they leave of the albedo, once colour, emission and alpha are known. False: a texture
+ * that is needed (strict), or out of memory. */
+bool import_shine(importer *im, material_use *use, const struct aiMaterial *ai);
+/* What the scene file says of them. */
+void import_override_shine(importer *im, model_material *m, const scene_material *o);
+/* Last: no more is reflected than arrives, and nothing stays that the kind has no use for. */
+void import_settle_shine(model_material *m);
+
+/* import_texture_mean.c: means over all texels, 0..1, of colours (as if they were sRGB if `srgb`) and alpha. All 1 where the image is
+ * missing or broken, with a warning that names `material` (not strict), or without one if that is NULL. */
+bool import_texture_mean(importer *im, const char *name, const char *material, bool srgb, float mean[4]);
+/* Of a texture of Assimp's material; all 1 if it has none. Its colours are sRGB but for metalness and roughness. */
+bool import_texture_mean_of(importer *im, const struct aiMaterial *ai, enum aiTextureType type, unsigned index, const char *material,
+                            float mean[4]);
+
+/* import_texture.c: decodes image `name` of this file; its texels are the caller's to free. What is wrong with it, or NULL. */
+const char *import_image(const importer *im, const char *name, bool resolved, model_image *out);
+/* A texture that is missing or broken: an error if strict, else a warning that says what is done `instead`. */
+bool import_without(importer *im, const char *material, const char *name, const char *what, const char *instead);
+/* image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
  * names `material` (not strict) where it is missing or broken. */
 bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image);
 

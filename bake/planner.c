@@ -20,7 +20,7 @@ static bool gives_photons(const scene *s, uint32_t light) {
     return s->automatic || s->lights[light].photons;
 }
 
-/* Mean power over the path, 2 pi W summed over channels: what a light's share of the paths follows. */
+/* Mean power over the path, W / 2 pi, summed over channels: what a light's share of the paths follows. */
 static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
     double sum = 0;
     for (uint32_t f = 0; f < frames; f++) {
@@ -255,6 +255,9 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
             c->effects |= VIT_BIT(SMOOTH);
     if (r->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
+    effects_force(s, c, &out->effects);
+    out->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? out->area_paths : 0;
+    out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
     if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;
@@ -293,14 +296,4 @@ void plan_free(plan *p) {
     free(p->baked_paths);
     emitters_free(&p->area);
     memset(p, 0, sizeof *p);
-}
-
-void plan_explain(const plan *p, plan_line_fn *line, void *user) {
-    char text[256];
-#define X(bit, name, macro, why)                                                                                               \
-    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_BIT(macro) ? "called for since" : "not called for, would be if", \
-             why);                                                                                                             \
-    line(user, text);
-    VIT_EFFECTS(X)
-#undef X
 }

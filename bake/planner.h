@@ -5,6 +5,7 @@
 #include "atlas.h"
 #include "bvh.h"
 #include "emitters.h"
+#include "effects.h"
 #include "reach.h"
 #include "sky.h"
 #include "tracks.h"
@@ -18,6 +19,7 @@ typedef struct plan {
     float sky_center[3], sky_radius; /* of a sphere round the scene, m */
     double lit_area;           /* m2 of sides that light can reach */
     double free_path;          /* reach.free_path, m */
+    effects_decided effects;
 } plan;
 
 /* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights, the area lights together and the
@@ -34,9 +36,5 @@ void plan_set_radius(plan *p, double radius, vit_photon *baked);
 /* A cluster's buckets hold photons of all zones that any of its samples accepts, a sample's area is that of its own zones: divided by
  * one another they are no irradiance. So quality.effective_area does nothing with both. */
 bool plan_leaves_area_out(const scene_quality *q);
-
-/* One line an effect: "called for" or not, and why. */
-typedef void plan_line_fn(void *user, const char *line);
-void plan_explain(const plan *p, plan_line_fn *line, void *user);
 
 #endif

@@ -93,6 +93,7 @@ typedef struct vit_open_info {
                                 * the host's memory, frames are rendered into it in place: give vit_frame() the same pointer */
     uint32_t profile;          /* 1: time each pass (vit_stats.pass_ms) */
     uint32_t count_work;       /* 1: count each pass's work (vit_stats.pass_work); frames are slower and have the same bits */
+    uint32_t record_reach;     /* 1: record what the rays of each frame reach (vit_reached); the same bits (baker) */
     uint32_t max_nodes;        /* not 0: lower or raise this bound of the pack (tests, baker) */
     uint32_t max_list;         /* likewise */
 } vit_open_info;
@@ -104,7 +105,7 @@ typedef struct vit_buffer_info {
     uint64_t bytes;
 } vit_buffer_info;
 
-#define VIT_MAX_BUFFERS 48
+#define VIT_MAX_BUFFERS 64
 #define VIT_MAX_PASSES 64
 #define VIT_MAX_WORKS 16
 
@@ -173,6 +174,10 @@ uint64_t vit_hash(const void *data, size_t bytes);
 
 /* Reads the counters back: not for the frame loop. */
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why);
+
+/* What the last frame's rays reached, with record_reach: VIT_REACHED_* bits (records.clh) a material, and of VIT_REACHED_MORE other things
+ * after them. VIT_USAGE: `count` is not their number, or it was not asked for. Not for the frame loop. */
+vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why);
 
 /* What went wrong in a frame without ending the program, or ended it. */
 typedef struct vit_fault {

@@ -16,7 +16,7 @@ static inline li chain_goes_on(global const vit_attributes *attributes, global c
 }
 
 kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance, global float *rays,
-                   volatile global uint *split WORK_PARAMETERS)
+                   volatile global uint *split, volatile global uint *reached WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
@@ -33,6 +33,8 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     WORK_BEGIN
     for (uint i = 0; i < scene->chain && l_any(going); i++) {
         WORK_LANES(surface_points, going);
+        if (VIT_EFFECT_REACH)
+            reach_note(scene, attributes, reached, going, triangle, VIT_REACHED_VIEW);
         surface s = surface_at(SURFACE_SCENE, o, d, l_sel(going, t, L_F(1)), going, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
         li glass = VIT_EFFECT_GLASS ? going & L_NE(s.shine.kind, L_I((int)VIT_MIRROR)) : L_I(0);

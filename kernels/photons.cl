@@ -104,7 +104,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
 #if VIT_WITH(TRACED)
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
 kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides, global const uint *cells,
-                         global vit_photon *photons, volatile global uint *counters WORK_PARAMETERS)
+                         global vit_photon *photons, volatile global uint *counters, volatile global uint *reached WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
@@ -141,6 +141,8 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             t = l_sel(alive, t, L_F(1));
             s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, L_F(PHOTON_CONE));
             WORK_LANES(surface_points, alive);
+            if (VIT_EFFECT_REACH)
+                reach_note(scene, attributes, reached, alive, triangle, VIT_REACHED_PHOTON);
             WORK_LANES(texture_fetches, s.textured);
         }
         /* Mirrors and glass store nothing; without caustics they end paths. */
@@ -162,7 +164,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         if (hit_number + 1 == scene->bounces || !l_any(alive))
             continue; /* slots of dead paths are still written, as empty */
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
-            power = lv3_scale(power, light_falloff(light, t * t) * (t * t));
+            power = lv3_scale(power, light_left(light, t * t));
         lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
         lf u, v;
         photon_numbers(path, hit_number, &u, &v);

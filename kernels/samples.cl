@@ -30,7 +30,7 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
 kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
                     global const float *rays, global const vit_sky_texel *sky, global const uint *sides, global const uint *cells,
                     global float *position, global uint *normal, global uint *albedo, global float *direct, global uint *accept,
-                    global float *inverse_area, global uint *gloss WORK_PARAMETERS)
+                    global float *inverse_area, global uint *gloss, volatile global uint *reached WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
@@ -50,6 +50,11 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         d = l_camera_ray(scene, camera, round / layers, x, y);
     if (VIT_EFFECT_SKY_IMAGE && l_any(~hit))
         light = sky_radiance(scene, sky, d);
+    if (VIT_EFFECT_REACH) {
+        reach_note(scene, attributes, reached, hit, triangle, VIT_REACHED_VIEW);
+        if (l_any(round_active(scene, first, x, y, active) & ~hit))
+            atomic_or(reached + scene->materials + 1u, VIT_REACHED_VIEW);
+    }
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
     if (l_any(hit)) {

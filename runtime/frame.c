@@ -44,6 +44,8 @@ static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_
     vit_status status = VIT_OK;
     if (v->limits.effects & ON_WORK) /* counted from nothing each frame */
         status = v->device->clear(v->state, B_work, why);
+    if (status == VIT_OK && (v->limits.effects & ON_REACH))
+        status = v->device->clear(v->state, B_reached, why);
     for (uint32_t round = 0; round < v->limits.rounds && status == VIT_OK; round++)
         status = walk_round(v, frame, round, after, user, why);
     return status;

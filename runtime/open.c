@@ -36,6 +36,8 @@ static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_DOTS;
     if (info->count_work)
         l.effects |= ON_WORK;
+    if (info->record_reach)
+        l.effects |= ON_REACH;
     if ((s->effects & ON(PHOTONS)) && !(s->effects & ON(SPARSE)))
         l.effects |= ON_DENSE;
     if (s->effects & (ON(MIRROR) | ON(GLASS)))

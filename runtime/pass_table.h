@@ -20,18 +20,18 @@
 #define ARGS_ROUND B(cameras), V(frame), V(round), V(layers), B(active)
 
 #define VIT_PASSES(X)                                                                                                         \
-    X(find_edges, ON(ANTIALIAS), SECOND_COPY, PER_BLOCK, ONCE, W(edges),                                                           \
+    X(find_edges, ON(ANTIALIAS), SECOND_COPY, PER_BLOCK, ONCE, W(edges),                                                      \
       B(scene), B(shown), B(edges))                                                                                           \
     X(activate, ON_FILM, EACH, PER_BLOCK, ONCE, W(active) | W(split),                                                         \
       B(scene), V(round), V(layers), B(edges), B(split), B(active))                                                           \
     X(visibility, ALWAYS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance),                                          \
       ARGS_RAYS, ARGS_ROUND, B(hit_triangle), B(hit_distance), ARGS_WORK)                                                     \
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split),                      \
-      ARGS_RAYS, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), ARGS_WORK)                                  \
+      ARGS_RAYS, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                      \
     X(samples, ALWAYS, EACH, PER_SAMPLE, ONCE,                                                                                \
       W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(gloss),                               \
       ARGS_SURFACE, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position),           \
-      B(normal), B(albedo), B(direct), B(accept), B(inverse_area), B(gloss), ARGS_WORK)                                       \
+      B(normal), B(albedo), B(direct), B(accept), B(inverse_area), B(gloss), B(reached), ARGS_WORK)                           \
     X(direct_light, ON(LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct),                                                            \
       ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle), B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct),     \
       ARGS_WORK)                                                                                                              \
@@ -44,7 +44,7 @@
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters),                                            \
       B(scene), V(round), B(masks), B(counters))                                                                              \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters),                                              \
-      ARGS_RAYS, B(lights), V(frame), B(sides), B(cells), B(photons), B(counters), ARGS_WORK)                                 \
+      ARGS_RAYS, B(lights), V(frame), B(sides), B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                     \
     X(cluster_keys, ON(PHOTONS), EACH, PER_RUN, ONCE, W(masks) | W(keys) | W(counters),                                       \
       B(scene), B(cameras), V(frame), V(run), B(hit_triangle), B(position), B(normal), B(albedo), B(masks), B(keys),          \
       B(counters))                                                                                                            \
@@ -87,7 +87,7 @@
     X(photon_dots, ON_DOTS, FIRST, PER_PHOTON, ONCE, W(dots),                                                                 \
       B(scene), B(cameras), V(frame), B(photons), B(hit_distance), B(dots))                                                   \
     X(expose, ON_FILM, EACH, PER_SAMPLE, ONCE, W(film) | W(shown),                                                            \
-      B(scene), ARGS_ROUND, B(albedo), B(direct), B(indirect), B(gloss), B(rays), B(film), B(shown))         \
+      B(scene), ARGS_ROUND, B(albedo), B(direct), B(indirect), B(gloss), B(rays), B(film), B(shown))                          \
     X(resolve, ALWAYS, AT_END, PER_SAMPLE, ONCE, W(framebuffer),                                                              \
       B(scene), B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(normal), B(albedo), B(direct), V(max_nodes),        \
       B(indirect), B(keys), B(masks), B(prefix), B(list_count), B(dots), B(photons), B(gloss), B(rays), B(film), B(edges),    \

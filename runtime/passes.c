@@ -71,6 +71,8 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
         return l->effects & ON(MIRROR) ? "mirror" : "glass";
     if (by & ON_FILM)
         return l->effects & ON(ANTIALIAS) ? "antialias" : "glass";
+    if (by & ON_REACH)
+        return "record_reach";
     return by & ON_DOTS ? "view photons" : by & ON_WORK ? "count_work" : "not called for";
 }
 

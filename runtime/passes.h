@@ -13,6 +13,7 @@
 #define ON_DENSE ((uint64_t)1 << 61) /* indirect light is estimated at every sample */
 #define ON_FILM ((uint64_t)1 << 60)  /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
 #define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
+#define ON_REACH ((uint64_t)1 << 58) /* vit_open_info.record_reach */
 #define ALWAYS ((uint64_t)0)
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
@@ -90,6 +91,7 @@ typedef struct vit_limits {
     X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                         \
     X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                            \
     X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
+    X(reached, ON_REACH, NONE, (s->materials + (uint64_t)VIT_REACHED_MORE) * 4)                                                  \
     X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT

@@ -1,7 +1,17 @@
-/* vit_stats: reads the counters back; not for the frame loop. */
+/* vit_stats, vit_reached: read counters back; not for the frame loop. */
 #include "vit.h"
 #include "work.h"
+#include <stdio.h>
 #include <string.h>
+
+vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why) {
+    const uint64_t bytes = vit_buffer_bytes(B_reached, v->pack.scene, &v->limits);
+    if (bytes == 0 || bytes != (uint64_t)count * sizeof *words) {
+        snprintf(why->text, sizeof why->text, "vit_reached: %u words asked for, there are %llu", count, (unsigned long long)bytes / 4);
+        return VIT_USAGE;
+    }
+    return v->device->read(v->state, B_reached, (size_t)bytes, words, why);
+}
 
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
     uint32_t counters[3 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];

@@ -9,9 +9,14 @@
  *    of the root's list, the pixels of dots.
  * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
 #define PASS_BYTES(X)                                                                                                          \
+    X(find_edges, 4 * z->samples + z->samples / 4)                                                                             \
+    X(activate, z->activate *(z->samples / 16))                                                                                \
+    X(chains, (4 + 4 + 4 + 4 + 40) * z->samples + HITS)                                                                        \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
-    X(direct_light, (4 + z->position + 4 + 4 + 12 + 12) * z->samples + z->lights)                                                       \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
+    X(direct_light, LIT * z->samples + z->lights)                                                                              \
+    X(area_light, (LIT + sizeof(vit_emitter) * z->area_samples) * z->samples)                                                  \
+    X(sky_light, (LIT + sizeof(vit_emitter) * z->sky_samples) * z->samples)                                                    \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                                                         \
     X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
@@ -31,11 +36,13 @@
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
-    X(resolve, z->shown * z->samples + z->pixel * z->pixels)                                                                   \
+    X(expose, (z->shown + 12 + 12 + 4) * z->samples)                                                                           \
+    X(resolve, (z->film ? 12 : z->shown) * z->samples + z->pixel * z->pixels)                                                                   \
     X(account, (4 + 4 + 4) * (uint64_t)VIT_COUNTER_COUNT)
 
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
 #define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
+#define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->view + z->gloss) /* what passes of direct light read and write a sample */
 #define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
 #define BOX BOX_BYTES(z->zones)
 
@@ -49,6 +56,10 @@ typedef struct sizes {
     uint64_t evaluation;           /* bytes: of an evaluation; of a bucket with its part of the box */
     uint64_t corner;               /* bytes of a cluster's box that each of its eight octants takes, smoothed */
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
+    uint64_t film;                 /* 1: a pixel has several samples */
+    uint64_t activate;             /* bytes a block of samples: active, edges, split */
+    uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
+    uint64_t area_samples, sky_samples;
     uint64_t zones, baked, cell;   /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
 
@@ -81,6 +92,14 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
                .nodes = 1, /* before the first frame there is the root */
                .shown = shown_bytes(l),
                .pixel = vit_format_bytes(l->format) + (l->effects & ON_DOTS ? 4u : 0u)};
+    z.film = (l->effects & ON_FILM) != 0;
+    z.activate = 4 + (l->effects & ON(ANTIALIAS) ? 4u : 0u) + (l->effects & ON(GLASS) ? 4u : 0u);
+    z.end = l->effects & ON_CHAINS ? 28 : 0;
+    z.gloss = l->effects & ON(GLOSS) ? 8 : 0;
+    z.view = z.gloss && z.end ? 12 : 0;
+    z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.gloss ? 4u : 0u);
+    z.area_samples = s->area_samples;
+    z.sky_samples = s->sky_samples;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
@@ -93,6 +112,15 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
         z.entries = least(c[VIT_COUNTER_list], l->max_list);
     }
     return z;
+}
+
+/* Of a pass that runs in so many rounds, each over all samples and nodes. */
+static sizes of_rounds(const sizes *z, uint64_t rounds) {
+    sizes all = *z;
+    uint64_t *each[] = {&all.samples, &all.masks, &all.photons, &all.nodes, &all.inner, &all.listed, &all.entries, &all.lights, &all.coarse};
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
+        *each[i] *= rounds;
+    return all;
 }
 
 static uint64_t pass_bytes(const char *name, const sizes *z, const uint64_t *w) {
@@ -127,6 +155,7 @@ void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_limits *
         uint64_t *w = out->pass_work[row++];
         for (uint32_t k = 0; k < VIT_WORK_COUNT; k++)
             w[k] = (uint64_t)at[2 * k + 1] << 32 | at[2 * k];
-        w[VIT_WORK_bytes] = pass_bytes(vit_passes[p].name, &z, w);
+        const sizes all = of_rounds(&z, vit_pass_rounds(&vit_passes[p], l));
+        w[VIT_WORK_bytes] = pass_bytes(vit_passes[p].name, &all, w);
     }
 }

@@ -26,6 +26,11 @@ static inline float light_falloff(const vit_light *light, float d2) {
 /* Irradiance, a unit of intensity, at p about the unit normal n if nothing is between; *l: unit, towards the light, *d metres
  * away. */
 static inline float light_irradiance(const vit_light *light, vec3 p, vec3 n, vec3 *l, float *d) {
+    if (light->kind == VIT_LIGHT_DIRECTIONAL) {
+        *d = 3e38f;
+        *l = vec3_scale(vec3_load(light->direction), -1.0f);
+        return float_max(vec3_dot(n, *l), 0.0f);
+    }
     const vec3 to = vec3_sub(vec3_load(light->position), p);
     const float d2 = float_max(vec3_dot(to, to), 1e-12f);
     *d = sqrtf(d2);

@@ -2,8 +2,17 @@
 #ifndef VIT_COST_PATHS_H
 #define VIT_COST_PATHS_H
 
-#include "photon_rays.h"
+#include "emitters.h"
 #include "reference.h"
+#include "shine.h"
+
+/* What a pixel is the mean of. */
+typedef enum path_filter {
+    PATH_CENTRE, /* one ray */
+    PATH_BOX,    /* the pixel */
+    PATH_TENT    /* 2 x 2 pixels, by a tent */
+} path_filter;
+path_filter paths_filter(const vit_scene *s);
 
 /* A frame's scene, ready for rays. */
 typedef struct path_scene {
@@ -13,28 +22,36 @@ typedef struct path_scene {
     const bool *direct_only; /* may be NULL */
     uint32_t bounces;
     bool face_normals; /* of reference_input */
+    path_filter filter;
+    bool by_chance;    /* some light is found by paths that hit it: of surfaces, or of the sky */
+    bool panes;        /* rays to lights may pass thin glass */
     atlas atlas;
     photon_scene scene;
     photon_rays rays;
+    emitters emitters;
 } path_scene;
 
-/* Uses the sections in place; `out` must stay where it is until paths_close(). False: Embree fails; nothing to close. */
+/* Uses the sections in place; `out` must stay where it is until paths_close(). False: Embree fails, or memory; nothing to close. */
 bool paths_open(const reference_input *in, unsigned threads, path_scene *out);
 void paths_close(path_scene *p);
 
-/* What the pixel's ray found, and its radiance times exposure without indirect light. */
+/* What a ray through the pixel found in the end, and its radiance times exposure without indirect light. */
 typedef struct view_sample {
+    bool random; /* the pixel has several copies, or glass is seen: each path has a view sample of its own; only x and y count */
     bool hit;
-    vec3 position, face, normal; /* metres, off the surface; unit geometric and shading normals of the side that is seen */
-    vec3 albedo;
-    double direct[3]; /* emission or background included */
+    uint32_t x, y;
+    shine_place place;
+    double weight[3]; /* that mirrors and glass on the way left */
+    double direct[3]; /* emission or background included; without what paths find of area lights and the sky */
+    double limited[3], unlimited[3]; /* straight from lights through panes: indirect light, since photons pass these */
 } view_sample;
 
 void paths_view(const path_scene *p, uint32_t x, uint32_t y, view_sample *out, uint64_t *rays);
 
-/* Sums of `count` paths' indirect radiance times exposure. */
+/* Sums of `count` paths' radiance times exposure. */
 typedef struct path_sums {
-    double limited[3];   /* of at most bounces - 1 reflections */
+    double direct[3];    /* what view_sample.direct leaves out */
+    double limited[3];   /* indirect light of at most bounces - 1 reflections */
     double unlimited[3]; /* of all, ended by Russian roulette; not computed if only_limited */
 } path_sums;
 

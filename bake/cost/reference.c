@@ -164,7 +164,7 @@ static vit_status trace_rounds(rendering *r, vit_text *why) {
     return save(r, true, &saved, why);
 }
 
-/* View samples, once a run: their rays count in the first. */
+/* View samples that paths share, once a run: their rays count in the first. */
 static vit_status trace(rendering *r, vit_text *why) {
     const uint64_t rays = r->state.rays;
     r->began = now();
@@ -236,7 +236,7 @@ vit_status reference_render(const reference_input *in, reference *out, vit_text 
 }
 
 void reference_free(reference *r) {
-    double *const images[] = {r->direct, r->limited, r->unlimited, r->limited_variance, r->unlimited_variance};
+    double *const images[] = {r->direct, r->limited, r->unlimited, r->direct_variance, r->limited_variance, r->unlimited_variance};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         free(images[i]);
     *r = (reference){0};

@@ -30,7 +30,7 @@ static void keep(reference_timer *t, uint32_t x, uint32_t y, const view_sample *
         return;
     float *out = t->image + 3 * ((size_t)(y / every) * t->grid_width + x / every);
     for (int k = 0; k < 3; k++)
-        out[k] = (float)(v->direct[k] + path->limited[k]);
+        out[k] = (float)(v->direct[k] + path->direct[k] + path->limited[k]);
 }
 
 static void pixel_chunk(void *user, uint32_t chunk, uint64_t *rays) {

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #define COST_NAME 96
-#define COST_VALUES 512
+#define COST_VALUES 1024 /* SCENE_QUALITY */
 
 typedef struct cost_setting {
     char name[COST_NAME];      /* short and unique: "default", "radius 0.5", "buckets, tile 16" */

@@ -26,9 +26,9 @@ static inline uint32_t sequence_permute(uint32_t v, uint32_t seed) {
 
 #define SEQUENCE_LENGTH (1u << 16)
 
-/* Point i < SEQUENCE_LENGTH of the sequence that `seed` names: its first 2^n points are stratified; different seeds' points are
- * independent. */
-static inline void sequence_point(uint32_t seed, uint32_t i, float *u, float *v) {
+/* Point i < SEQUENCE_LENGTH of the sequence that `seed` names, as 32-bit fractions: its first 2^n points are stratified; different
+ * seeds' points are independent. */
+static inline void sequence_bits(uint32_t seed, uint32_t i, uint32_t *u, uint32_t *v) {
     const uint32_t shuffled = sequence_reverse(sequence_permute(sequence_reverse(i), seed)) & (SEQUENCE_LENGTH - 1);
     uint32_t second = 0; /* Sobol's second dimension; the first is the reversed index */
     for (uint32_t bits = shuffled, column = 0x80000000u; bits; bits >>= 1, column ^= column >> 1)
@@ -36,8 +36,23 @@ static inline void sequence_point(uint32_t seed, uint32_t i, float *u, float *v)
             second ^= column;
     const uint32_t first = sequence_permute(shuffled, pcg(seed ^ 0x9e3779b9u)); /* reversed twice */
     second = sequence_permute(sequence_reverse(second), pcg(seed ^ 0x85ebca6bu));
-    *u = unit_float(sequence_reverse(first));
-    *v = unit_float(sequence_reverse(second));
+    *u = sequence_reverse(first);
+    *v = sequence_reverse(second);
+}
+
+static inline void sequence_point(uint32_t seed, uint32_t i, float *u, float *v) {
+    uint32_t a, b;
+    sequence_bits(seed, i, &a, &b);
+    *u = unit_float(a);
+    *v = unit_float(b);
+}
+
+/* With all 32 bits, for numbers that choose twice. */
+static inline void sequence_fine(uint32_t seed, uint32_t i, double *u, double *v) {
+    uint32_t a, b;
+    sequence_bits(seed, i, &a, &b);
+    *u = (double)a * 0x1p-32;
+    *v = (double)b * 0x1p-32;
 }
 
 #endif

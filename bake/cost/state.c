@@ -25,6 +25,7 @@ void state_add(reference_state *s, const pixel_sums *round) {
         memcpy(s->sums[i].direct, round[i].direct, sizeof s->sums[i].direct);
         for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
             for (int k = 0; k < 3; k++) {
+                s->sums[i].paths[q].direct[k] += round[i].paths[q].direct[k];
                 s->sums[i].paths[q].limited[k] += round[i].paths[q].limited[k];
                 s->sums[i].paths[q].unlimited[k] += round[i].paths[q].unlimited[k];
             }
@@ -52,6 +53,22 @@ static double paths_a_sequence(const reference_state *s) {
     return (double)s->rounds * (REFERENCE_ROUND / REFERENCE_SEQUENCES);
 }
 
+/* Of direct light without what view samples see by themselves. */
+static estimate direct_of(const reference_state *s, uint32_t pixel, int channel) {
+    double sums[REFERENCE_SEQUENCES];
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        sums[q] = s->sums[pixel].paths[q].direct[channel];
+    return estimate_of(sums, paths_a_sequence(s));
+}
+
+/* Of both together, which the same paths find. */
+static estimate total_of(const reference_state *s, uint32_t pixel, int channel) {
+    double sums[REFERENCE_SEQUENCES];
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        sums[q] = s->sums[pixel].paths[q].limited[channel] + s->sums[pixel].paths[q].direct[channel];
+    return estimate_of(sums, paths_a_sequence(s));
+}
+
 static estimate limited_of(const reference_state *s, uint32_t pixel, int channel) {
     double sums[REFERENCE_SEQUENCES];
     for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
@@ -73,7 +90,7 @@ double state_error(const reference_state *s) {
         return INFINITY;
     for (uint32_t i = 0; i < s->pixels; i++)
         for (int k = 0; k < 3; k++) {
-            const estimate e = limited_of(s, i, k);
+            const estimate e = total_of(s, i, k);
             total += s->sums[i].direct[k] + e.mean;
             noise += e.variance;
         }
@@ -82,7 +99,8 @@ double state_error(const reference_state *s) {
 }
 
 vit_status state_finish(const reference_state *s, reference *out, vit_text *why) {
-    double **const images[] = {&out->direct, &out->limited, &out->unlimited, &out->limited_variance, &out->unlimited_variance};
+    double **const images[] = {&out->direct,          &out->limited,          &out->unlimited,
+                               &out->direct_variance, &out->limited_variance, &out->unlimited_variance};
     *out = (reference){.width = s->width,
                        .height = s->height,
                        .samples = s->rounds * REFERENCE_ROUND,
@@ -97,8 +115,9 @@ vit_status state_finish(const reference_state *s, reference *out, vit_text *why)
     for (uint32_t i = 0; i < s->pixels; i++)
         for (int k = 0; k < 3; k++) {
             const size_t at = 3 * (size_t)i + (size_t)k;
-            const estimate limited = limited_of(s, i, k), unlimited = unlimited_of(s, i, k);
-            out->direct[at] = s->sums[i].direct[k];
+            const estimate direct = direct_of(s, i, k), limited = limited_of(s, i, k), unlimited = unlimited_of(s, i, k);
+            out->direct[at] = s->sums[i].direct[k] + direct.mean;
+            out->direct_variance[at] = direct.variance;
             out->limited[at] = limited.mean;
             out->limited_variance[at] = limited.variance;
             out->unlimited[at] = unlimited.mean;

@@ -6,7 +6,7 @@
 
 /* Sums over the paths of each sequence. */
 typedef struct pixel_sums {
-    double direct[3]; /* not a sum */
+    double direct[3]; /* not a sum: what view samples see without paths */
     path_sums paths[REFERENCE_SEQUENCES];
 } pixel_sums;
 
@@ -20,7 +20,7 @@ typedef struct reference_state {
 
 vit_status state_make(uint32_t width, uint32_t height, reference_state *out, vit_text *why);
 void state_free(reference_state *s);
-/* One more round's sums, those of all pixels; direct light is that of any round. */
+/* One more round's sums, those of all pixels; view samples are those of any round. */
 void state_add(reference_state *s, const pixel_sums *round);
 /* NMSE of the standard error of direct + limited; 0 for a black picture, infinite before the first round. */
 double state_error(const reference_state *s);

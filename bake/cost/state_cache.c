@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #define FACE_NORMALS 0x80000000u /* with METHOD: of reference_input */
-#define METHOD 1u                /* raise when the same input gives other bits than before */
+#define METHOD 2u                /* raise when the same input gives other bits than before */
 #define ROOM 4096                /* bytes of a path */
 
 typedef struct cache_header {
@@ -18,12 +18,13 @@ typedef struct cache_header {
     uint32_t width, height, rounds, zero;
 } cache_header;
 
-static const char magic[8] = "VITREF1";
+static const char magic[8] = "VITREF2";
 
 /* META's part that the picture depends on, and the settings. */
 typedef struct key_settings {
     uint32_t method, round, frame, every, bounces, width, height, direct_only[64];
-    float ray_offset, box_pad, background[3];
+    uint32_t filter, sky_lights;
+    float ray_offset, box_pad, background[3], ambient[3];
 } key_settings;
 
 static key_settings settings_of(const reference_input *in) {
@@ -40,6 +41,9 @@ static key_settings settings_of(const reference_input *in) {
     k.ray_offset = s->ray_offset;
     k.box_pad = s->box_pad;
     memcpy(k.background, s->background, sizeof k.background);
+    memcpy(k.ambient, s->ambient, sizeof k.ambient);
+    k.filter = paths_filter(s);
+    k.sky_lights = (s->effects & VIT_BIT(SKY_LIGHT)) != 0;
     for (uint32_t i = 0; in->direct_only && i < s->lights; i++)
         k.direct_only[i % 64] = k.direct_only[i % 64] * 2 + in->direct_only[i];
     return k;
@@ -73,7 +77,8 @@ uint64_t state_key(const reference_input *in) {
                               vit_hash(data[VIT_SECTION_MATL], s->materials * sizeof(vit_material)),
                               vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
                               vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
-                              vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32))};
+                              vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32)),
+                              s->sky_size ? vit_hash(data[VIT_SECTION_SKYT], (s->sky_size + (size_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel)) : 0};
     return vit_hash(parts, sizeof parts);
 }
 

@@ -157,6 +157,7 @@ ALIKE(frames_without_photons_hash_the_same, "dark", few)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
 ALIKE(a_large_scene_hashes_the_same, "atrium", few)
+ALIKE(mirrors_glass_gloss_soft_light_and_several_samples_a_pixel_hash_the_same, "shine", together)
 
 static void a_frame_hashes_the_same_in_any_order(void **state) {
     (void)state;
@@ -193,6 +194,7 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("zones"), "--trace", together, COUNT(together));
     assert_all_alike(test_pack("zones-buckets"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
+    assert_all_alike(test_pack("shine"), "--trace", few, COUNT(few));
 }
 
 static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
@@ -241,6 +243,7 @@ int main(void) {
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),
         cmocka_unit_test(a_large_scene_hashes_the_same),
+        cmocka_unit_test(mirrors_glass_gloss_soft_light_and_several_samples_a_pixel_hash_the_same),
         cmocka_unit_test(a_frame_hashes_the_same_in_any_order),
         cmocka_unit_test(frames_of_a_path_differ_from_each_other),
         cmocka_unit_test(every_buffer_is_the_same_after_every_pass),

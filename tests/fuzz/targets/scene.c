@@ -18,6 +18,8 @@ static void check_lights(const scene *s) {
     for (int i = 0; i < s->light_count; i++) {
         const scene_light *l = &s->lights[i];
         FUZZ_HOLDS(l->use[0] || l->key_count > 0);
+        in_range(l->kind, VIT_LIGHT_POINT, VIT_LIGHT_DIRECTIONAL);
+        FUZZ_HOLDS(l->use[0] || l->kind != VIT_LIGHT_DIRECTIONAL || l->range == 0);
         in_range(l->range, 0, 1e6);
         for (int k = 0; k < l->key_count; k++)
             for (int c = 0; c < 3; c++) {
@@ -26,6 +28,33 @@ static void check_lights(const scene *s) {
                 FUZZ_HOLDS(k == 0 || l->keys[k].time > l->keys[k - 1].time);
             }
     }
+}
+
+static void check_materials(const scene *s) {
+    for (int i = 0; i < s->material_count; i++) {
+        const scene_material *m = &s->materials[i];
+        if (m->has_kind)
+            in_range(m->kind, VIT_MATTE, VIT_THIN_GLASS);
+        if (m->has_exponent)
+            in_range(m->exponent, 1, VIT_MAX_EXPONENT);
+        if (m->has_ior)
+            in_range(m->ior, VIT_MIN_IOR, VIT_MAX_IOR);
+        for (int k = 0; k < 3; k++) {
+            in_range(m->specular[k], 0, 1);
+            in_range(m->absorption[k], 0, 1e9);
+        }
+    }
+}
+
+static void check_quality(const scene_quality *q) {
+    in_range(q->photons, 0, 1000000);
+    in_range(q->bounces, 1, 32);
+    in_range(q->antialias, 1, VIT_MAX_COPIES);
+    FUZZ_HOLDS((q->antialias & (q->antialias - 1)) == 0);
+    in_range(q->antialias_contrast, 0, 1);
+    in_range(q->light_samples, 1, VIT_MAX_LIGHT_SAMPLES);
+    in_range(q->sky_samples, 1, VIT_MAX_LIGHT_SAMPLES);
+    in_range(q->specular_depth, 1, VIT_MAX_CHAIN);
 }
 
 static void check_scene(const scene *s) {
@@ -42,8 +71,12 @@ static void check_scene(const scene *s) {
             FUZZ_HOLDS(isfinite(s->meshes[i].transform[k]));
     for (int i = 0; i < s->camera_count; i++)
         in_range(s->camera[i].fov, 1, 170);
-    in_range(s->quality.photons, 0, 1000000);
-    in_range(s->quality.bounces, 1, 32);
+    in_range(s->sky.scale, 0, 1e6);
+    in_range(s->sky.rotate, -360, 360);
+    for (int k = 0; k < 3; k++)
+        in_range(s->ambient[k], 0, 1e9);
+    check_quality(&s->quality);
+    check_materials(s);
     check_lights(s);
 }
 
@@ -59,10 +92,11 @@ static void check_quality_text(const scene_quality *q) {
 
 static void check_tracks(const scene *s) {
     static model_camera camera = {.name = "c", .target = {0, 0, -1}, .up = {0, 1, 0}, .fov = 50};
-    static model_light light = {
-        .name = "l", .kind = VIT_LIGHT_SPOT, .direction = {0, -1, 0}, .power = {1, 2, 3}, .inner = 10, .outer = 20};
+    static model_light lights[2] = {
+        {.name = "l", .kind = VIT_LIGHT_SPOT, .direction = {0, -1, 0}, .power = {1, 2, 3}, .inner = 10, .outer = 20},
+        {.name = "s", .kind = VIT_LIGHT_DIRECTIONAL, .direction = {0, 0, -1}, .power = {1, 2, 3}}};
     const model m = {
-        .cameras = &camera, .camera_count = 1, .lights = &light, .light_count = 1, .lo = {-1, -1, -1}, .hi = {1, 2, 3}};
+        .cameras = &camera, .camera_count = 1, .lights = lights, .light_count = 2, .lo = {-1, -1, -1}, .hi = {1, 2, 3}};
     tracks t;
     vit_text why = {""};
     if (tracks_evaluate(s, &m, &t, &why) != VIT_OK) {
@@ -78,7 +112,8 @@ static void check_tracks(const scene *s) {
     for (size_t i = 0; i < (size_t)s->frames * t.light_count; i++)
         for (int k = 0; k < 3; k++)
             FUZZ_HOLDS(isfinite(t.lights[i].position[k]) && isfinite(t.lights[i].intensity[k]) &&
-                       t.lights[i].intensity[k] >= 0);
+                       t.lights[i].intensity[k] >= 0 && fabsf(t.lights[i].direction[k]) <= 1.001f &&
+                       (t.lights[i].kind != VIT_LIGHT_DIRECTIONAL || t.lights[i].spot_scale > 0));
     tracks_free(&t);
 }
 

@@ -1,0 +1,268 @@
+/* What each effect costs and what it is worth: milliseconds of a frame, bytes of the device's buffers and error against the path tracer,
+ * with the effect and with the pack's effects less it, on a scene that calls for it. A room, open at the front, with three balls. */
+#include "measure.h"
+
+#include "cost/images.h"
+#include "cost/metrics.h"
+#include "cost/reference.h"
+#include "effects.h"
+#include "pipeline.h"
+
+enum { WIDTH = 320, HEIGHT = 240, EVERY = 4, ROUNDS = 9, STEPS = 20 };
+#define FOLDER "build/bench/effects"
+
+/* X(effect, light, materials of the balls, more of the scene, more of the quality block). */
+#define LAMP "{ type = \"point\"; keys = ( { position = [0.2, 1.9, 0.9]; power = [30.0, 28.0, 24.0]; } ); }"
+#define SUN "{ type = \"directional\"; keys = ( { position = [0.5, 1.6, 2.0]; target = [0.0, 0.5, 0.0]; irradiance = [4.0, 3.8, 3.2]; } ); }"
+#define MATT "{ name = \"left\"; color = [0.6, 0.3, 0.2]; }, { name = \"right\"; color = [0.2, 0.4, 0.6]; }"
+#define ROWS(X)                                                                                                                \
+    X(PHOTONS, LAMP, MATT, "", "")                                                                                             \
+    X(SMOOTH, LAMP, MATT, "", "")                                                                                              \
+    X(TEXTURES, LAMP, MATT ", { name = \"floor\"; texture = \"wood.png\"; }", "", "")                                          \
+    X(GLOSS, LAMP, "{ name = \"left\"; color = [0.4, 0.2, 0.1]; specular = [0.4, 0.4, 0.4]; exponent = 40.0; },"                 \
+                   "{ name = \"right\"; color = [0.1, 0.2, 0.3]; specular = [0.5, 0.5, 0.5]; exponent = 200.0; }", "", "")      \
+    X(MIRROR, LAMP, "{ name = \"left\"; kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }", "", "")                                \
+    X(GLASS, LAMP, "{ name = \"right\"; kind = \"glass\"; ior = 1.5; absorption = [0.6, 0.3, 0.1]; }", "", "caustics = false;")    \
+    X(CAUSTICS, "", "{ name = \"right\"; kind = \"glass\"; ior = 1.5; }, { name = \"lamp\"; emission = [20.0, 18.0, 15.0]; area_light = true; }", "", \
+      "photons = 200000; radius = 0.06; indirect_samples = 1;")                                                                                                        \
+    X(AREA_LIGHTS, "", MATT ", { name = \"lamp\"; emission = [20.0, 18.0, 15.0]; area_light = true; }", "", "")                    \
+    X(DIRECTIONAL, SUN, MATT, "", "")                                                                                          \
+    X(SKY_LIGHT, "", MATT, "background = [0.8, 1.0, 1.3]; sky: { light = true; };", "")                                         \
+    X(AMBIENT, LAMP, MATT, "ambient = [0.1, 0.1, 0.12];", "")                                                                  \
+    X(ANTIALIAS, LAMP, MATT, "", "antialias = 4;")
+
+static const struct {
+    const char *name;
+    uint64_t effect;
+    const char *lights, *materials, *scene, *quality;
+} rows[] = {
+#define X(macro, lights, materials, scene, quality) {#macro, VIT_BIT(macro), lights, materials, scene, quality},
+    ROWS(X)
+#undef X
+};
+
+static FILE *create(const char *name) {
+    char path[256];
+    snprintf(path, sizeof path, FOLDER "/%s", name);
+    FILE *f = fopen(path, "w");
+    if (!f)
+        bench_fail("%s: %s", path, strerror(errno));
+    return f;
+}
+
+/* A sphere of latitudes and longitudes, wound outwards, its vertices from number `first` on; returns the next one's. */
+static int put_ball(FILE *f, const char *material, const double at[3], double radius, int first) {
+    const double pi = 3.14159265358979324;
+    const int row = 2 * STEPS + 1;
+    fprintf(f, "usemtl %s\n", material);
+    for (int i = 0; i <= STEPS; i++)
+        for (int j = 0; j < row; j++) {
+            const double a = pi * i / STEPS, b = pi * j / STEPS, n[3] = {sin(a) * cos(b), cos(a), sin(a) * sin(b)};
+            fprintf(f, "v %.9g %.9g %.9g\nvn %.9g %.9g %.9g\n", at[0] + radius * n[0], at[1] + radius * n[1], at[2] + radius * n[2], n[0],
+                    n[1], n[2]);
+        }
+    for (int i = 0; i < STEPS; i++)
+        for (int j = 0; j + 1 < row; j++) {
+            const int a = first + i * row + j, b = a + 1, c = a + row, d = c + 1;
+            if (i > 0)
+                fprintf(f, "f %d//%d %d//%d %d//%d\n", a, a, b, b, d, d);
+            if (i + 1 < STEPS)
+                fprintf(f, "f %d//%d %d//%d %d//%d\n", a, a, d, d, c, c);
+        }
+    return first + (STEPS + 1) * row;
+}
+
+static void write_meshes(void) {
+    FILE *f = create("balls.obj");
+    int next = put_ball(f, "left", (const double[]){-0.42, 0.35, 0.0}, 0.35, 1);
+    next = put_ball(f, "right", (const double[]){0.45, 0.3, 0.3}, 0.3, next);
+    put_ball(f, "left", (const double[]){0.1, 0.18, 0.75}, 0.18, next);
+    fclose(f);
+    f = create("room.obj");
+    fputs("mtllib room.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\n"
+          "v -0.3 1.98 -0.3\nv 0.3 1.98 -0.3\nv 0.3 1.98 0.3\nv -0.3 1.98 0.3\nvt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n"
+          "usemtl floor\nf 4/1 3/2 2/3 1/4\nusemtl wall\nf 1/1 2/2 6/3 5/4\nusemtl red\nf 4/1 1/2 5/3 8/4\nusemtl green\nf 2/1 3/2 7/3 6/4\n"
+          "usemtl lamp\nf 9/1 10/2 11/3 12/4\n",
+          f);
+    fclose(f);
+    f = create("room.mtl");
+    fputs("newmtl floor\nKd 0.7 0.7 0.7\nnewmtl wall\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 0.1\nnewmtl green\nKd 0.1 0.5 0.1\nnewmtl lamp\nKd 0.5 0.5 0.5\n", f);
+    fclose(f);
+}
+
+static void write_scene(size_t i) {
+    FILE *f = create("scene.cfg");
+    fprintf(f,
+            "output: { width = %d; height = %d; frames = 1; };\nmeshes = ( { file = \"room.obj\"; }, { file = \"balls.obj\"; } );\n"
+            "camera: { keys = ( { eye = [0.0, 0.9, 3.3]; target = [0.0, 0.75, 0.0]; fov = 40.0; } ); };\nlights = ( %s );\n"
+            "materials = ( %s );\n%s\nquality: { photons = 20000; bounces = 4; radius = 0.2; %s };\n",
+            WIDTH, HEIGHT, rows[i].lights, rows[i].materials, rows[i].scene, rows[i].quality);
+    fclose(f);
+}
+
+#define TRY(call)                                                                                                              \
+    do {                                                                                                                       \
+        if ((call) != VIT_OK)                                                                                                  \
+            bench_fail("%s: %s", rows[i].name, why.text);                                                                      \
+    } while (0)
+
+/* The pack's bytes with these effects dropped; free() them. */
+static void *without(const pipeline_packed *p, uint64_t effect, size_t *size) {
+    pack_sections sections = p->sections;
+    vit_scene s = p->plan.scene;
+    vit_text why = {""};
+    void *bytes = NULL;
+    effects_drop(&s, effect);
+    if (effect == VIT_BIT(DIRECTIONAL)) /* the scene's only light */
+        effects_drop(&s, VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS));
+    if (!(s.effects & VIT_BIT(AREA_LIGHTS)) && p->plan.scene.area_samples > 0)
+        sections.data[VIT_SECTION_EMIT] = (const vit_emitter *)sections.data[VIT_SECTION_EMIT] + VIT_PATTERNS * p->plan.scene.area_samples;
+    if (effect & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))) /* nor their photons */
+        effects_drop(&s, VIT_BIT(PHOTONS));
+    if (!(s.effects & VIT_BIT(LIGHTS)))
+        s.lights = 0;
+    if (!(s.effects & VIT_BIT(PHOTONS)))
+        s.paths = s.baked = 0;
+    sections.data[VIT_SECTION_META] = &s;
+    sections.data[VIT_SECTION_GOLD] = p->gold;
+    if (vit_pack_derive(&s, &why) != VIT_OK || pack_assemble(&sections, &bytes, size, &why) != VIT_OK)
+        bench_fail("without: %s", why.text);
+    return bytes;
+}
+
+static float *render(const void *pack, size_t size, const images_grid *g, uint64_t *device_bytes) {
+    vit_text why = {""};
+    vit_requirements need;
+    const vit_open_info how = {.pack = pack, .pack_size = size, .device = VIT_DEVICE_HOST};
+    float *out = bench_array((size_t)images_across(g) * images_down(g) * 3, sizeof *out);
+    if (vit_require(&how, &need, &why) != VIT_OK || images_render(&how, 0, g, out, NULL, &why) != VIT_OK)
+        bench_fail("render: %s", why.text);
+    *device_bytes = need.device_bytes;
+    return out;
+}
+
+static void write_picture(const char *name, const char *what, const float *rgb, uint32_t width, uint32_t height) {
+    char path[256];
+    snprintf(path, sizeof path, "%s-%s.ppm", name, what);
+    FILE *f = create(path);
+    fprintf(f, "P6\n%u %u\n255\n", width, height);
+    for (size_t i = 0; i < (size_t)width * height * 3; i++) {
+        const double c = rgb[i] < 0 ? 0 : rgb[i] > 1 ? 1 : (double)rgb[i];
+        fputc((int)(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055) + 0.5), f);
+    }
+    fclose(f);
+}
+
+/* Frames of two packs in turns. */
+typedef struct player {
+    vit *v;
+    void *arena;
+    series ms;
+} player;
+
+static void player_open(player *p, const void *pack, size_t size) {
+    vit_text why = {""};
+    vit_requirements need;
+    vit_open_info how = {.pack = pack, .pack_size = size};
+    memset(p, 0, sizeof *p);
+    if (vit_require(&how, &need, &why) != VIT_OK)
+        bench_fail("%s", why.text);
+    how.arena = p->arena = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64);
+    how.arena_size = need.host_bytes;
+    if (!p->arena || vit_open(&how, &p->v, &why) != VIT_OK)
+        bench_fail("%s", why.text);
+}
+
+static void player_time(player *p, int keep) {
+    vit_text why = {""};
+    const double began = bench_seconds();
+    if (vit_frame(p->v, 0, NULL, 0, &why) != VIT_OK)
+        bench_fail("%s", why.text);
+    if (keep)
+        series_add(&p->ms, 1e3 * (bench_seconds() - began));
+}
+
+static void player_close(player *p) {
+    vit_close(p->v);
+    free(p->arena);
+}
+
+static void run(csv *c, size_t i) {
+    pipeline p = {.device = VIT_DEVICE_HOST};
+    pipeline_packed packed;
+    vit_text why = {""};
+    write_scene(i);
+    TRY(pipeline_read(FOLDER "/scene.cfg", &p.scene, &why));
+    TRY(pipeline_load(&p, &why));
+    const pipeline_choice choice = pipeline_default(&p);
+    TRY(pipeline_pack(&p, &choice, &packed, &why));
+    if (!(packed.plan.scene.effects & rows[i].effect))
+        bench_fail("%s: its scene does not call for it: %s", rows[i].name, FOLDER "/scene.cfg");
+    size_t less_size;
+    void *less = without(&packed, rows[i].effect, &less_size);
+    const images_grid grid = {WIDTH, HEIGHT, EVERY};
+    reference truth;
+    const reference_input in = {.sections = &packed.sections,
+                                .every = EVERY,
+                                .bounces = packed.plan.scene.bounces,
+                                .target = 2e-4,
+                                .max_samples = 4096};
+    TRY(reference_render(&in, &truth, &why));
+    const size_t floats = (size_t)truth.width * truth.height * 3;
+    uint64_t bytes[2];
+    float *with = render(packed.bytes, packed.size, &grid, &bytes[0]), *bare = render(less, less_size, &grid, &bytes[1]);
+    float *picture = bench_array(floats, sizeof *picture);
+    double *whole = bench_array(floats, sizeof *whole);
+    for (size_t k = 0; k < floats; k++)
+        picture[k] = (float)(whole[k] = truth.direct[k] + truth.limited[k]);
+    const cost_error a = metrics_compare(whole, with, NULL, truth.width, truth.height), b = metrics_compare(whole, bare, NULL, truth.width, truth.height);
+    write_picture(rows[i].name, "with", with, truth.width, truth.height);
+    write_picture(rows[i].name, "without", bare, truth.width, truth.height);
+    write_picture(rows[i].name, "reference", picture, truth.width, truth.height);
+    player players[2];
+    player_open(&players[0], packed.bytes, packed.size);
+    player_open(&players[1], less, less_size);
+    for (int round = -1; round < ROUNDS; round++)
+        for (int k = 0; k < 2; k++)
+            player_time(&players[k], round >= 0);
+    const double ms[2] = {series_median(&players[0].ms), series_median(&players[1].ms)};
+    printf("%-12s %8.2f %8.2f %+8.2f %10.2f %+9.2f %9.5f %9.5f %+9.5f %+7.2f %9.5f\n", rows[i].name, ms[0], ms[1], ms[0] - ms[1], (double)bytes[0] * 1e-6,
+           ((double)bytes[0] - (double)bytes[1]) * 1e-6, a.nmse, b.nmse, b.nmse - a.nmse, 100 * a.bias, truth.error);
+    fflush(stdout);
+    csv_row(c, rows[i].name, "320x240", "ms with", &players[0].ms, "ms");
+    csv_row(c, rows[i].name, "320x240", "ms without", &players[1].ms, "ms");
+    const series exact[] = {series_exact((double)bytes[0]), series_exact((double)bytes[1]), series_exact(a.nmse), series_exact(b.nmse)};
+    csv_row(c, rows[i].name, "320x240", "bytes with", &exact[0], "bytes");
+    csv_row(c, rows[i].name, "320x240", "bytes without", &exact[1], "bytes");
+    csv_row(c, rows[i].name, "320x240", "NMSE with", &exact[2], "");
+    csv_row(c, rows[i].name, "320x240", "NMSE without", &exact[3], "");
+    for (int k = 0; k < 2; k++)
+        player_close(&players[k]);
+    reference_free(&truth);
+    free(whole);
+    free(picture);
+    free(with);
+    free(bare);
+    free(less);
+    pipeline_packed_free(&packed);
+    pipeline_free(&p);
+}
+
+int main(int argc, char **argv) {
+    csv c = csv_open("effects");
+    bench_folder(FOLDER);
+    write_meshes();
+    FILE *wood = fopen(VIT_BUILD_DIR "/scenes/wood.png", "rb"), *copy = create("wood.png");
+    for (int byte; wood && (byte = fgetc(wood)) != EOF;)
+        fputc(byte, copy);
+    if (!wood || fclose(copy) != 0)
+        bench_fail("wood.png cannot be copied");
+    fclose(wood);
+    printf("%-12s %8s %8s %8s %10s %9s %9s %9s %9s %7s %9s\n", "effect", "ms", "without", "adds", "MB", "adds", "NMSE", "without", "removed", "bias %",
+           "reference");
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        if (argc < 2 || strcmp(argv[1], rows[i].name) == 0)
+            run(&c, i);
+    csv_close(&c, "effects");
+    return VIT_OK;
+}
