@@ -63,8 +63,8 @@ typedef struct opening {
     float far; /* m */
 } opening;
 
-/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR; 0 where it is covered. Mirrors and glass
- * hand it on. */
+/* How open a side lies, 0..1: how far its light goes before it meets anything, at most OPEN_FAR; 0 where it is covered. Mirrors
+ * and glass hand it on. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     const photon_scene *s = &o->e->scene;
@@ -76,7 +76,8 @@ static void look_out(void *user, uint32_t i) {
     for (uint32_t k = 0; k < o->tries; k++) {
         const uint32_t seed = pcg(side) + k;
         float b[3], sp, cp, t = 0;
-        triangle_weights(unit_float(seed * 0xdb4f0b91u), unit_float(seed * 0xbbe05633u), b); /* four dimensions of Roberts 2018 */
+        triangle_weights(unit_float(seed * 0xdb4f0b91u), unit_float(seed * 0xbbe05633u),
+                         b); /* four dimensions of Roberts 2018 */
         const float u = unit_float(seed * 0xa0f2ec75u), r = sqrtf(u), h = sqrtf(float_max(1.0f - u, 4e-4f));
         sincos_turn(unit_float(seed * 0x89e18285u), &sp, &cp);
         const vec3 d = vec3_unit(vec3_along(vec3_along(vec3_scale(n, h), ax, r * cp), ay, r * sp));
@@ -153,8 +154,8 @@ void emitters_free(emitters *e) {
     *e = (emitters){0};
 }
 
-/* x chooses the side and, what is left of it, goes on over the triangle: sides that lie together stay together, and points that are
- * even over the square are even over one light of a few triangles. */
+/* x chooses the side and, what is left of it, goes on over the triangle: sides that lie together stay together, and points that
+ * are even over the square are even over one light of a few triangles. */
 emitter_place emitters_place(const emitters *e, double x, double y) {
     const double total = e->sum[e->count - 1], at = x * total;
     uint32_t low = 0, high = e->count - 1;
@@ -183,14 +184,15 @@ static int facing(vec3 n) {
     return 2 * axis + ((axis == 0 ? n.x : axis == 1 ? n.y : n.z) < 0.0f);
 }
 
-/* What shines in each of the six directions, W/sr summed over channels, is the same in every set and as much as it should be, so that
- * pixels side by side do not differ because of a point more on this side of the lamp or that. If a set has no point for a direction all
- * sets together shine as much as they should. Lamps with holes are left alone. */
+/* What shines in each of the six directions, W/sr summed over channels, is the same in every set and as much as it should be,
+ * so that pixels side by side do not differ because of a point more on this side of the lamp or that. If a set has no point for
+ * a direction all sets together shine as much as they should. Lamps with holes are left alone. */
 static void even_out(const emitters *e, uint32_t samples, vit_emitter *out) {
     double whole[6] = {0}, found[VIT_PATTERNS][6] = {{0}};
     for (uint32_t i = 0; i < e->count; i++) {
         const vit_material *m = side_material(&e->scene, e->side[i]);
-        whole[facing(side_normal(&e->scene, e->side[i]))] += m->cutout ? -INFINITY : side_area(&e->scene, e->side[i]) * radiance_sum(m);
+        whole[facing(side_normal(&e->scene, e->side[i]))] +=
+            m->cutout ? -INFINITY : side_area(&e->scene, e->side[i]) * radiance_sum(m);
     }
     for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
         const vit_emitter *p = out + i;

@@ -1,23 +1,23 @@
-/* emitters.c: area lights, the sides of triangles that emit and light others: points on them, for view samples and for photons. */
+/* emitters.c: area lights, the sides of triangles that emit and light others: points on them, for view samples and for photons.
+ */
 #ifndef VIT_BAKE_EMITTERS_H
 #define VIT_BAKE_EMITTERS_H
 
 #include "photon_surface.h"
 
-/* Both sides of a triangle shine alike, but for those that light cannot reach (VIT_SIDE_DARK_*), from where none could leave, or that are
- * covered. Points are dense in proportion
- * to radiance, summed over channels, times how open the side lies. */
+/* Both sides of a triangle shine alike, but for those that light cannot reach (VIT_SIDE_DARK_*), from where none could leave,
+ * or that are covered. Points are dense in proportion to radiance, summed over channels, times how open the side lies. */
 typedef struct emitters {
     photon_scene scene;
-    uint32_t count;  /* sides */
-    uint32_t *side;  /* 2 * triangle, + 1 for the back, ascending */
-    double *sum;     /* weights of sides 0 .. i; points are spread evenly along it */
-    double flux[3];  /* of all sides together, W a channel */
-    double area;     /* m2 */
+    uint32_t count; /* sides */
+    uint32_t *side; /* 2 * triangle, + 1 for the back, ascending */
+    double *sum;    /* weights of sides 0 .. i; points are spread evenly along it */
+    double flux[3]; /* of all sides together, W a channel */
+    double area;    /* m2 */
 } emitters;
 
-/* The triangles whose materials have `lights` and emission. *s is copied, what it points to is used in place. Without any *out is empty.
- * The result does not depend on `threads` (0: all cores). VIT_FAILED: out of memory, or Embree fails. */
+/* The triangles whose materials have `lights` and emission. *s is copied, what it points to is used in place. Without any *out
+ * is empty. The result does not depend on `threads` (0: all cores). VIT_FAILED: out of memory, or Embree fails. */
 vit_status emitters_find(const photon_scene *s, unsigned threads, emitters *out, vit_text *why);
 void emitters_free(emitters *e);
 

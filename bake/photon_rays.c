@@ -10,7 +10,7 @@ typedef struct RTCIntersectContext embree_context;
 #endif
 
 #define ONE_PLACE 0x1p-6f /* of ray_offset: faces so close lie in one place, and the first of them is seen */
-#define TINY 1e-18f /* a direction component nearer to zero than this counts as this; RAY_TINY of kernels/ray.clh */
+#define TINY 1e-18f       /* a direction component nearer to zero than this counts as this; RAY_TINY of kernels/ray.clh */
 
 /* One ray on its way, as the filter below sees it. */
 typedef struct query {

@@ -1,4 +1,5 @@
-/* photon_shine.h: kernels/shine.clh as plain C: where light goes at mirrors and glass, the same operations in the same order. */
+/* photon_shine.h: kernels/shine.clh as plain C: where light goes at mirrors and glass, the same operations in the same order.
+ */
 #ifndef VIT_BAKE_PHOTON_SHINE_H
 #define VIT_BAKE_PHOTON_SHINE_H
 
@@ -22,7 +23,8 @@ static inline shine_paths shine_at_glass(vec3 d, vec3 n, vec3 face, bool back, b
     const float eta = back && !thin ? ior : 1.0f / ior;
     const float ci = float_min(float_max(-vec3_dot(d, n), 0.0f), 1.0f), st2 = eta * eta * (1.0f - ci * ci);
     const float ct = sqrtf(float_max(1.0f - st2, 0.0f));
-    const float rs = (eta * ci - ct) / float_max(eta * ci + ct, 1e-20f), rp = (eta * ct - ci) / float_max(eta * ct + ci, 1e-20f);
+    const float rs = (eta * ci - ct) / float_max(eta * ci + ct, 1e-20f),
+                rp = (eta * ct - ci) / float_max(eta * ct + ci, 1e-20f);
     const float f = st2 > 1.0f || ci == 0.0f ? 1.0f : float_min(0.5f * (rs * rs + rp * rp), 1.0f);
     r.mirror = thin ? 2.0f * f / (1.0f + f) : f;
     const vec3 bent = vec3_unit(vec3_along(vec3_scale(d, eta), n, fmaf(eta, ci, -ct)));

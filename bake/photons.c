@@ -29,17 +29,17 @@ static float cone(const vit_light *light, vec3 direction) {
     return a * a;
 }
 
-/* What a range changes about the light's irradiance at squared distance d2; light_falloff() of kernels/direct.cl, times d2. */
+/* What a range changes about the light's irradiance at squared distance d2; light_left() of kernels/direct.cl. */
 static float range_factor(const vit_light *light, float d2) {
     const float q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return float_max(1.0f - q, 0.0f) * d2;
     const float window = float_max(1.0f - q * q, 0.0f);
-    return window * window / d2 * d2;
+    return window * window;
 }
 
-/* Path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square. `number`: the path's number among all
- * lights'. */
+/* Path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square. `number`: the path's number among
+ * all lights'. */
 static void curve_point(uint32_t count, uint32_t i, uint32_t number, float *u, float *v) {
     const uint32_t high = (i << 12) / count, rest = (i << 12) - high * count; /* i * 2^32 / count in two exact steps */
     const uint32_t r = pcg(number * 2u + 0x9e3779b9u);
@@ -95,8 +95,8 @@ static emission leave_light(const vit_light *light, uint32_t count, float u, flo
     return e;
 }
 
-/* A plane sequence for the dimensions that the curve leaves (Roberts 2018), so that any stretch of paths, which start alike in the
- * curve's two, is spread in these. */
+/* A plane sequence for the dimensions that the curve leaves (Roberts 2018), so that any stretch of paths, which start alike in
+ * the curve's two, is spread in these. */
 static void plane_point(uint32_t i, double *x, double *y) {
     *x = ((double)(i * 0xc13fa9a9u) + 0.5) * 0x1p-32;
     *y = ((double)(i * 0x91e10da5u) + 0.5) * 0x1p-32;
@@ -183,8 +183,8 @@ static vec3 shine_on(float ray_offset, const photon_surface *s, vec3 d, float t,
     return on;
 }
 
-/* Path i of a light; its k-th photon goes to slots[k * paths + i]. A photon is stored at every matt hit but the first hit, which is
- * direct light. */
+/* Path i of a light; its k-th photon goes to slots[k * paths + i]. A photon is stored at every matt hit but the first hit,
+ * which is direct light. */
 static void trace_path(const baking *b, const photons_light *l, vit_photon *slots, uint32_t i, uint32_t number) {
     const uint32_t bounces = b->in->bounces;
     const uint64_t effects = b->in->effects;
@@ -203,8 +203,9 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
         if (!matt && !(effects & VIT_BIT(CAUSTICS)))
             return;
         if (hit > 0 && matt)
-            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius, cell_of(b, d, triangle, weight_of));
-        if (hit == 0 && effects & VIT_BIT(RANGE) && !l->area && !l->sky)
+            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius,
+                  cell_of(b, d, triangle, weight_of));
+        if (hit == 0 && !l->area && !l->sky)
             power = vec3_scale(power, range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
         if (matt) {

@@ -1,5 +1,5 @@
-/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. METHODS.md P,
- * step 3. */
+/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. METHODS.md
+ * P, step 3. */
 #ifndef VIT_BAKE_PHOTONS_H
 #define VIT_BAKE_PHOTONS_H
 
@@ -15,7 +15,8 @@ typedef struct photons_light {
     vit_light light;      /* its record, the same in all frames; path_first and path_count do not count */
     uint32_t paths;       /* 1..PHOTONS_MAX_PATHS; 0: none */
     const emitters *area; /* not NULL: the area lights, and `light` does not count */
-    const sky *sky;       /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere round the scene */
+    const sky *sky; /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere round the
+                       scene */
 } photons_light;
 
 /* `done` runs from 0 to 1. Called by the thread that called photons_bake(). */

@@ -37,7 +37,8 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
     if (status != VIT_OK)
         return status;
     progress_stage(p->progress, "sides that light can reach");
-    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, p->scene.sky.light, g, p->threads, step, p->progress, r, why);
+    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, p->scene.sky.light, g, p->threads, step, p->progress, r,
+                            why);
 }
 
 /* Imports the meshes; if they lie far from the origin, moves the scene there and imports them again. */
@@ -318,7 +319,8 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
     if (status == VIT_OK)
         status = choose_shape(p, &choice->quality, out, why);
     if (status == VIT_OK)
-        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &p->sky, p->threads, &out->plan, why);
+        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &p->sky, p->threads,
+                           &out->plan, why);
     if (status == VIT_OK)
         status = place_emitters(p, out, why);
     if (status == VIT_OK)

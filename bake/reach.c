@@ -1,6 +1,6 @@
 /* Dark sides, by a small radiosity solution over the sides of triangles:
- *   1. rays from the lights (points, directions, area lights, the sky), over all frames and directions, give each side its direct
- *      irradiance;
+ *   1. rays from the lights (points, directions, area lights, the sky), over all frames and directions, give each side its
+ * direct irradiance;
  *   2. every side shoots GATHER_RAYS rays about its normal and notes which sides they find;
  *   3. E = direct + albedo * mean of E over what the rays found, repeated until light has gone everywhere (Jacobi);
  *   4. sides below the threshold ask again, with more rays of their own and rays towards the lights: triangles too small
@@ -35,17 +35,17 @@ typedef struct search {
     const model *m;
     uint32_t frames, sides;
     ray_scene rays;
-    uint32_t sources;    /* the tracks' lights, then the area lights if there are any, then the sky if it shines */
+    uint32_t sources; /* the tracks' lights, then the area lights if there are any, then the sky if it shines */
     bool sky;
-    uint32_t *lamps;     /* triangles that are area lights */
-    double *lamp_sum;    /* weights of lamps 0 .. i, by their share of the area and of the number; 2 in all */
+    uint32_t *lamps;  /* triangles that are area lights */
+    double *lamp_sum; /* weights of lamps 0 .. i, by their share of the area and of the number; 2 in all */
     uint32_t lamp_count;
-    vec center;          /* of a sphere round the scene */
+    vec center; /* of a sphere round the scene */
     float radius;
     atomic_ullong *flux; /* a side, direct, in 1 / FLUX_ONE of all lights' power */
     uint32_t *found;     /* GATHER_RAYS a side */
     float *direct, *irradiance, *next_irradiance;
-    float *path;         /* a side: summed length of the rays of step 2 that found something, m */
+    float *path; /* a side: summed length of the rays of step 2 that found something, m */
     float threshold;
     atomic_ullong shot;
 } search;
@@ -210,7 +210,8 @@ static bool ask_light(const search *s, uint32_t side, uint32_t i) {
         axis = vec_of(l->direction);
     } else {
         const uint32_t lamp = 2 * choose_lamp(s, sequence(other, 1, 0));
-        const vec front = side_point(s->g, lamp, sequence(other, 1, 1), sequence(other, 1, 2)), across = side_normal(s->g, lamp);
+        const vec front = side_point(s->g, lamp, sequence(other, 1, 1), sequence(other, 1, 2)),
+                  across = side_normal(s->g, lamp);
         const bool before = (o.x - front.x) * across.x + (o.y - front.y) * across.y + (o.z - front.z) * across.z > 0.0f;
         at = before ? front : plus(front, -2.0f * s->g->ray_offset, across);
         if (ray_scene_covered(&s->rays, lamp + !before, at))
@@ -250,7 +251,8 @@ static bool is_matt(const search *s, uint32_t side) {
     return side_material(s->m, s->g, side)->kind == VIT_MATTE;
 }
 
-/* Mean length of the ways between sides, m, each with the light that goes it; light that leaves the scene goes none. 0: all does. */
+/* Mean length of the ways between sides, m, each with the light that goes it; light that leaves the scene goes none. 0: all
+ * does. */
 static double mean_free_path(const search *s) {
     double sum = 0.0, light = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {

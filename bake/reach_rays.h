@@ -22,12 +22,12 @@ typedef struct ray_scene {
 /* Rays pass cut-out triangles as if they were not there. False: Embree fails; there is nothing to close. */
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out);
 void ray_scene_close(ray_scene *s);
-/* The side that the ray finds within `*distance` metres (unit direction): 2 * triangle, + 1 for the back; RAY_NOTHING, RAY_UNSURE.
- * *distance becomes how far that is, and stays for RAY_NOTHING. */
+/* The side that the ray finds within `*distance` metres (unit direction): 2 * triangle, + 1 for the back; RAY_NOTHING,
+ * RAY_UNSURE. *distance becomes how far that is, and stays for RAY_NOTHING. */
 uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance);
 
-/* The same for light: mirrors and glass send it on, `chance` deciding where glass may do either, and the matt side that is found in the
- * end counts; *distance is the whole way. RAY_UNSURE, too, if there is no end to it. */
+/* The same for light: mirrors and glass send it on, `chance` deciding where glass may do either, and the matt side that is
+ * found in the end counts; *distance is the whole way. RAY_UNSURE, too, if there is no end to it. */
 uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_t chance, float *distance);
 /* Does light get from p to what lies `distance` metres along the unit direction? Glass lets it pass. */
 bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance);

@@ -1,7 +1,7 @@
-/* The picture comes as longitude and latitude, where texels crowd at the poles, and goes into the octahedral square, where they are
- * nearly alike: each texel of the picture is cut into parts, finer than the square's texels, and each part, weighted by its solid angle,
- * goes to the texel that it lies in; so none is lost, however small and bright. Directions are chosen by hierarchical warping:
- * P. Clarberg et al., Wavelet importance sampling, 2005. */
+/* The picture comes as longitude and latitude, where texels crowd at the poles, and goes into the octahedral square, where they
+ * are nearly alike: each texel of the picture is cut into parts, finer than the square's texels, and each part, weighted by its
+ * solid angle, goes to the texel that it lies in; so none is lost, however small and bright. Directions are chosen by
+ * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "sky.h"
 #include "sobol.h"
 #include <math.h>
@@ -31,7 +31,8 @@ static void to_square(vec3 d, float *u, float *v) {
 /* And back; *density: solid angle over area of the square there, sr. */
 static vec3 from_square(double u, double v, double *density) {
     const double z = 1.0 - fabs(u) - fabs(v);
-    const double x = z >= 0.0 ? u : (1.0 - fabs(v)) * (u < 0.0 ? -1.0 : 1.0), y = z >= 0.0 ? v : (1.0 - fabs(u)) * (v < 0.0 ? -1.0 : 1.0);
+    const double x = z >= 0.0 ? u : (1.0 - fabs(v)) * (u < 0.0 ? -1.0 : 1.0),
+                 y = z >= 0.0 ? v : (1.0 - fabs(u)) * (v < 0.0 ? -1.0 : 1.0);
     const double l = sqrt(x * x + y * y + z * z);
     *density = 1.0 / (l * l * l);
     return (vec3){(float)(x / l), (float)(y / l), (float)(z / l)};
@@ -75,7 +76,8 @@ vec3 sky_radiance(const sky *s, vec3 d) {
 
 /* ---- directions by importance ---- */
 
-/* Power that a texel's interpolated picture sends, W/m2 a channel and, returned, of all: each quarter's mean is what its middle has. */
+/* Power that a texel's interpolated picture sends, W/m2 a channel and, returned, of all: each quarter's mean is what its middle
+ * has. */
 static double texel_power(const sky *s, int x, int y, double power[3]) {
     const double width = 2.0 / s->size;
     memset(power, 0, 3 * sizeof *power);
@@ -87,7 +89,8 @@ static double texel_power(const sky *s, int x, int y, double power[3]) {
         const float *own = texel(s, x, y)->radiance, *beside = texel(s, x + across, y)->radiance,
                     *below = texel(s, x, y + down)->radiance, *corner = texel(s, x + across, y + down)->radiance;
         for (int k = 0; k < 3; k++)
-            power[k] += solid * (0.5625 * (double)own[k] + 0.1875 * ((double)beside[k] + (double)below[k]) + 0.0625 * (double)corner[k]);
+            power[k] += solid * (0.5625 * (double)own[k] + 0.1875 * ((double)beside[k] + (double)below[k]) +
+                                 0.0625 * (double)corner[k]);
     }
     return power[0] + power[1] + power[2];
 }
@@ -185,7 +188,8 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
     for (int y = 0; y < height; y++)
         for (uint32_t j = 0; j < parts; j++) {
             const double upper = PI * ((double)y * parts + j) / rows, lower = PI * ((double)y * parts + j + 1.0) / rows;
-            const double middle = 0.5 * (upper + lower), sine = sin(middle), solid = (cos(upper) - cos(lower)) * 2.0 * PI / columns;
+            const double middle = 0.5 * (upper + lower), sine = sin(middle),
+                         solid = (cos(upper) - cos(lower)) * 2.0 * PI / columns;
             const float height_of = (float)cos(middle);
             for (int x = 0; x < width; x++) {
                 const float *c = rgb + 3 * ((size_t)y * (size_t)width + (size_t)x);
@@ -196,7 +200,8 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
                     float u, v;
                     to_square((vec3){(float)(sine * sin(angle)), height_of, (float)(-sine * cos(angle))}, &u, &v);
                     const int column = (int)((u * 0.5f + 0.5f) * (float)size), row = (int)((v * 0.5f + 0.5f) * (float)size);
-                    const size_t at = (size_t)(row < (int)size ? row : (int)size - 1) * size + (size_t)(column < (int)size ? column : (int)size - 1);
+                    const size_t at = (size_t)(row < (int)size ? row : (int)size - 1) * size +
+                                      (size_t)(column < (int)size ? column : (int)size - 1);
                     to[at].weight += solid;
                     for (int k = 0; k < 3; k++)
                         to[at].radiance[k] += solid * (double)c[k];

@@ -6,16 +6,18 @@
 #include "vitrine_pack.h"
 
 typedef struct sky {
-    uint32_t size;          /* texels a side, a power of two; 0: no picture */
-    vit_sky_texel *texels;  /* (size + 2)^2, section SKYT */
-    float background[3];    /* radiance without a picture, W/(m2 sr) */
-    double irradiance[3];   /* of all directions together on what faces them: the integral of radiance, W/m2 */
-    double *weight;         /* with a picture: quarters of quarters of the square, their power summed over channels: 1, 4, 16, ... size^2 */
+    uint32_t size;         /* texels a side, a power of two; 0: no picture */
+    vit_sky_texel *texels; /* (size + 2)^2, section SKYT */
+    float background[3];   /* radiance without a picture, W/(m2 sr) */
+    double irradiance[3];  /* of all directions together on what faces them: the integral of radiance, W/m2 */
+    double *
+        weight; /* with a picture: quarters of quarters of the square, their power summed over channels: 1, 4, 16, ... size^2 */
 } sky;
 
-/* From a picture of the whole sky, twice as wide as high: u = 0.5 + atan2(x, -z) / (2 pi) to the right, v = acos(y) / pi from the top, in
- * front of the scene's -z in the middle. PNG and JPEG are sRGB, .hdr (Radiance) is linear. scale: W/(m2 sr) of a value of 1; rotate:
- * degrees about y, as meshes are. VIT_BAD_INPUT: the text names file and cause; VIT_FAILED: out of memory. */
+/* From a picture of the whole sky, twice as wide as high: u = 0.5 + atan2(x, -z) / (2 pi) to the right, v = acos(y) / pi from
+ * the top, in front of the scene's -z in the middle. PNG and JPEG are sRGB, .hdr (Radiance) is linear. scale: W/(m2 sr) of a
+ * value of 1; rotate: degrees about y, as meshes are. VIT_BAD_INPUT: the text names file and cause; VIT_FAILED: out of memory.
+ */
 vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit_text *why);
 /* From `width` x `height` linear texels, W/(m2 sr), three floats each. */
 vit_status sky_from_texels(const float *rgb, int width, int height, double rotate, sky *out, vit_text *why);

@@ -140,7 +140,8 @@ typedef struct opening {
     float far; /* metres */
 } opening;
 
-/* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene, or meets a mirror or glass. */
+/* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene, or meets a mirror
+ * or glass. */
 static void look_out(void *user, uint32_t i) {
     const opening *o = user;
     zones *z = o->z;

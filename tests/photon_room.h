@@ -169,7 +169,6 @@ static inline void room_finish(room *r, uint32_t lights, uint32_t bounces) {
                             .ray_offset = r->g.ray_offset,
                             .box_pad = r->b.box_pad,
                             .radius = 0.25f,
-                            .effects = VIT_BIT(RANGE),
                             .bounces = bounces,
                             .lights = r->lights,
                             .light_count = lights};

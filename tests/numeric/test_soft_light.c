@@ -1,17 +1,17 @@
 /* Light of surfaces and of the sky at view samples, against closed forms.
  *
- * What can go wrong: points on a lamp stand for too much or too little of it, crowd, or are shadowed by the lamp itself; the sky
- * gives the wrong share. A rectangle's irradiance on a point is known (Lambert 1760: half of the radiance times the sum over its
- * edges of the angle that the edge subtends times the cosine between the surface's normal and that of the plane through point and
- * edge); an open plane under an even sky of radiance L gets pi L. Errors of single pixels are those of a sum over so many points,
- * and must fall with their number; means over the picture are means over VIT_PATTERNS times as many. */
+ * What can go wrong: points on a lamp stand for too much or too little of it, crowd, or are shadowed by the lamp itself; the
+ * sky gives the wrong share. A rectangle's irradiance on a point is known (Lambert 1760: half of the radiance times the sum
+ * over its edges of the angle that the edge subtends times the cosine between the surface's normal and that of the plane
+ * through point and edge); an open plane under an even sky of radiance L gets pi L. Errors of single pixels are those of a sum
+ * over so many points, and must fall with their number; means over the picture are means over VIT_PATTERNS times as many. */
 #include "catalogue.h"
 #include "scene_lab.h"
 #include <math.h>
 
 #define PI 3.14159265358979
 #define ALBEDO (818.0 * 818.0 / 1023.0 / 1023.0) /* as view samples hold it */
-#define HEIGHT 1.0  /* of the lamp, m */
+#define HEIGHT 1.0                               /* of the lamp, m */
 enum { SIDE = 64, FLOATS = 4 * SIDE * SIDE };
 
 static const double half[2] = {0.4, 0.25}; /* of the lamp, m */
@@ -34,11 +34,12 @@ static void write_scenes(scene_lab *l) {
 /* From just under the lamp, 90 degrees down: a pixel's edge is 2 * 0.9 / SIDE on the floor. */
 static void render(scene_lab *l, const char *mesh, const char *more, int samples, float *pixels) {
     FILE *f = scene_lab_create(l, "scene.cfg");
-    (void)fprintf(f,
-                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"%s\"; } );\n%s\n"
-                  "camera: { near = 0.1; keys = ( { fov = 90.0; eye = [0.0, 0.9, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, 0.0, "
-                  "-1.0]; } ); };\nquality: { photons = 0; light_samples = %d; sky_samples = %d; };\n",
-                  SIDE, SIDE, mesh, more, samples, samples);
+    (void)fprintf(
+        f,
+        "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"%s\"; } );\n%s\n"
+        "camera: { near = 0.1; keys = ( { fov = 90.0; eye = [0.0, 0.9, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, 0.0, "
+        "-1.0]; } ); };\nquality: { photons = 0; light_samples = %d; sky_samples = %d; };\n",
+        SIDE, SIDE, mesh, more, samples, samples);
     (void)fclose(f);
     scene_lab_bake(l, "scene.cfg", "");
     scene_lab_play(l, "direct", pixels, FLOATS);
@@ -50,7 +51,8 @@ static double lamp_irradiance(double x, double z) {
     double sum = 0;
     for (int i = 0; i < 4; i++) {
         const int *a = sign[i], *b = sign[(i + 1) % 4];
-        const double p[3] = {a[0] * half[0] - x, HEIGHT, a[1] * half[1] - z}, q[3] = {b[0] * half[0] - x, HEIGHT, b[1] * half[1] - z};
+        const double p[3] = {a[0] * half[0] - x, HEIGHT, a[1] * half[1] - z},
+                     q[3] = {b[0] * half[0] - x, HEIGHT, b[1] * half[1] - z};
         const double n[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
         const double across = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), along = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         sum += atan2(across, along) * n[1] / across;
@@ -94,7 +96,7 @@ static void a_rectangle_lights_as_lambert_says(void **state) {
         catalogue_row("soft light", what, e.rms, bounds[i].rms, "relative rms");
         (void)snprintf(what, sizeof what, "rectangle of %d points: mean against the closed form", bounds[i].samples);
         catalogue_row("soft light", what, e.mean, bounds[i].mean, "relative");
-        
+
         assert_true(e.rms < 0.5 * last); /* random points: 0.5 */
         last = e.rms;
         points[i] = (catalogue_point){bounds[i].samples, e.rms};
@@ -131,7 +133,8 @@ static void a_picture_is_seen_where_it_is(void **state) {
     FILE *f = scene_lab_create(*state, "sky.hdr");
     (void)fprintf(f, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", HIGH, WIDE);
     for (int i = 0; i < WIDE * HIGH; i++) {
-        const double angle = 2 * PI * ((i % WIDE + 0.5) / WIDE - 0.5), y = cos(PI * (i / WIDE + 0.5) / HIGH), value[3] = {1 + 0.5 * sin(angle), 1 + 0.5 * y, 1};
+        const double angle = 2 * PI * ((i % WIDE + 0.5) / WIDE - 0.5), y = cos(PI * (i / WIDE + 0.5) / HIGH),
+                     value[3] = {1 + 0.5 * sin(angle), 1 + 0.5 * y, 1};
         for (int k = 0; k < 3; k++)
             (void)fputc((int)(value[k] * 128 + 0.5), f); /* (c + 0) / 256 * 2^(129 - 128) */
         (void)fputc(129, f);
@@ -139,7 +142,8 @@ static void a_picture_is_seen_where_it_is(void **state) {
     (void)fclose(f);
     f = scene_lab_create(*state, "scene.cfg");
     (void)fprintf(f,
-                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"plane.obj\"; translate = [0.0, -5.0, 40.0]; } );\n"
+                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"plane.obj\"; translate "
+                  "= [0.0, -5.0, 40.0]; } );\n"
                   "sky: { image = \"sky.hdr\"; scale = 2.0; rotate = 30.0; light = false; };\n"
                   "camera: { near = 0.1; keys = ( { fov = 90.0; eye = [0.0, 0.0, 0.0]; target = [0.0, 0.0, -1.0]; } ); };\n"
                   "quality: { photons = 0; };\n",

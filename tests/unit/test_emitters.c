@@ -1,5 +1,6 @@
-/* Points on area lights: where they lie, how evenly, and how much they shine together; and the photons that leave there. The room is
- * tests/photon_room.h's; its lamps are quads of it. What a lamp gives is known: pi times radiance times area, of each open side. */
+/* Points on area lights: where they lie, how evenly, and how much they shine together; and the photons that leave there. The
+ * room is tests/photon_room.h's; its lamps are quads of it. What a lamp gives is known: pi times radiance times area, of each
+ * open side. */
 #include "photon_room.h"
 
 enum { LAMP = WALLS, OTHER };
@@ -82,8 +83,8 @@ static void a_side_that_no_light_reaches_does_not(void **state) {
     room_drop(r);
 }
 
-/* Against the ceiling, in two sheets nearer to one another than rays keep from surfaces, and in two in one place: what shines is what one
- * sees. */
+/* Against the ceiling, in two sheets nearer to one another than rays keep from surfaces, and in two in one place: what shines
+ * is what one sees. */
 static void covered_sides_do_not_shine_and_doubled_ones_once(void **state) {
     (void)state;
     for (int k = 0; k < 4; k++) {

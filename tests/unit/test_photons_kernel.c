@@ -33,8 +33,8 @@ static vit_photon *kernel_photons(const room *r, const cells *c, uint32_t paths)
         lights[i].path_count = r->lights[i].paths;
     }
     lab l = lab_open(1,
-                     VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) |
-                         VIT_BIT(CUTOUT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | r->in.effects,
+                     VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(PHOTONS) |
+                         VIT_BIT(TRACED) | r->in.effects,
                      frame_zero);
     const cl_mem arguments[] = {lab_buffer(&l, &s, sizeof s),
                                 lab_buffer(&l, r->g.triangles, r->m.triangles * sizeof *r->g.triangles),
@@ -117,7 +117,8 @@ static bool is_alike(const vit_photon *p, const vit_photon *q) {
 }
 
 /* Baked photons keep the order of slots but leave the empty ones out: where the two differ, a few are looked ahead. */
-static likeness compare_photons(const room *r, const vit_photon *baked, uint32_t count, const vit_photon *traced, uint32_t paths) {
+static likeness compare_photons(const room *r, const vit_photon *baked, uint32_t count, const vit_photon *traced,
+                                uint32_t paths) {
     enum { AHEAD = 8 };
     const uint32_t stored = r->in.bounces - 1, each = paths / r->in.light_count;
     likeness l = {0};
@@ -142,14 +143,15 @@ static likeness compare_photons(const room *r, const vit_photon *baked, uint32_t
                 break;
             }
     }
-    print_message("%u baked, %u traced, %u alike, %u to the bit; power %.6f of the kernel's\n", count, l.stored, l.alike, l.same, l.watts / l.expected);
+    print_message("%u baked, %u traced, %u alike, %u to the bit; power %.6f of the kernel's\n", count, l.stored, l.alike,
+                  l.same, l.watts / l.expected);
     return l;
 }
 
 /* effects: of the room, and a texture filter, SEQUENCE, ZONES. */
 static likeness compare_room(room *r, uint64_t effects) {
     cells c = some_cells(r);
-    r->in.effects = effects | VIT_BIT(RANGE);
+    r->in.effects = effects;
     r->in.sequence = (effects & VIT_BIT(SEQUENCE)) != 0;
     r->in.cells = effects & VIT_BIT(ZONES) ? &c : NULL;
     uint32_t count, paths = 0;
@@ -196,11 +198,13 @@ static void so_they_do_with_zones_and_the_bounce_sequence(void **state) {
 
 enum { GLASS_BALL = WALLS, PANE };
 
-/* A ball of green glass with smooth normals and a pane above a glossy floor, a mirror at the side, a lamp and a beam of parallel light. */
+/* A ball of green glass with smooth normals and a pane above a glossy floor, a mirror at the side, a lamp and a beam of
+ * parallel light. */
 static room *shining_room(void) {
     room *r = room_closed(0.5f);
     room_ball(r, (const float[]){0.1f, -0.3f, 0.2f}, 0.45f, GLASS_BALL);
-    room_quad(r, (const float[]){-0.9f, 0.3f, -0.9f}, (const float[]){0.8f, 0.0f, 0.1f}, (const float[]){0.1f, 0.1f, 0.8f}, PANE);
+    room_quad(r, (const float[]){-0.9f, 0.3f, -0.9f}, (const float[]){0.8f, 0.0f, 0.1f}, (const float[]){0.1f, 0.1f, 0.8f},
+              PANE);
     room_texture(r, WALL_BACK, 0, 250, 255, 90, 255);
     r->lights[0] = room_point_light(0.1f, 0.8f, -0.1f, 8192);
     r->lights[1] = (photons_light){.light = {.position = {0.2f, 0.8f, 0.1f},
@@ -211,14 +215,16 @@ static room *shining_room(void) {
                                              .spot_scale = 0.15f},
                                    .paths = 8192};
     room_finish(r, 2, 7);
-    r->materials[WALL_LEFT] = (vit_material){.texture = VIT_NONE, .kind = VIT_MIRROR, .specular = {0.9f, 0.8f, 0.95f}, .exponent = 1, .ior = 1};
+    r->materials[WALL_LEFT] =
+        (vit_material){.texture = VIT_NONE, .kind = VIT_MIRROR, .specular = {0.9f, 0.8f, 0.95f}, .exponent = 1, .ior = 1};
     r->materials[GLASS_BALL] = (vit_material){.texture = VIT_NONE,
                                               .kind = VIT_GLASS,
                                               .specular = {1.0f, 0.98f, 0.96f},
                                               .absorption = {3.0f, 0.2f, 2.0f},
                                               .exponent = 1,
                                               .ior = 1.5f};
-    r->materials[PANE] = (vit_material){.texture = VIT_NONE, .kind = VIT_THIN_GLASS, .specular = {0.9f, 0.9f, 1.0f}, .exponent = 1, .ior = 1.5f};
+    r->materials[PANE] =
+        (vit_material){.texture = VIT_NONE, .kind = VIT_THIN_GLASS, .specular = {0.9f, 0.9f, 1.0f}, .exponent = 1, .ior = 1.5f};
     r->materials[WALL_FLOOR].specular[0] = 0.4f;
     r->materials[WALL_FLOOR].specular[1] = 0.3f;
     r->materials[WALL_FLOOR].exponent = 50.0f;

@@ -323,8 +323,8 @@ static void one_thread_and_two_flag_the_same_sides(void **state) {
     drop(f);
 }
 
-/* Of chords of a convex body that begin evenly over its surface and along the cosine the mean is 4 volumes over the surface. All
- * faces of a cube are alike, so light that does not lie evenly has the same mean. */
+/* Of chords of a convex body that begin evenly over its surface and along the cosine the mean is 4 volumes over the surface.
+ * All faces of a cube are alike, so light that does not lie evenly has the same mean. */
 static void light_goes_the_mean_chord_of_a_cube(void **state) {
     (void)state;
     for (int size = 1; size <= 4; size *= 4) {
@@ -371,7 +371,8 @@ static void the_automatic_radius_follows_the_way_of_light_within_bounds(void **s
     assert_true(fabs(plan_radius(&room, 2000.0) - 0.6) < 0.001);
 }
 
-/* A box in a glass box, in a room with a lamp: glass lets light in, to both sides of what stands there, and is not dark itself. */
+/* A box in a glass box, in a room with a lamp: glass lets light in, to both sides of what stands there, and is not dark itself.
+ */
 static void light_gets_into_glass(void **state) {
     (void)state;
     for (uint32_t kind = GLASS; kind <= THIN_GLASS; kind++) {
@@ -436,7 +437,8 @@ static void mirrors_hand_light_on(void **state) {
     }
 }
 
-/* A lamp of its own light: what it shines on is lit, what hangs before its other side, in a box, too; a covered side sends none. */
+/* A lamp of its own light: what it shines on is lit, what hangs before its other side, in a box, too; a covered side sends
+ * none. */
 static void area_lights_light(void **state) {
     (void)state;
     fixture *f = make();

@@ -1,5 +1,6 @@
-/* Pictures of the sky: where each direction's light comes from, that none is lost on the way from longitude and latitude to the octahedral
- * square, that the square's edges do not show, and that directions are chosen as they shine. Truths are sums over the picture in double. */
+/* Pictures of the sky: where each direction's light comes from, that none is lost on the way from longitude and latitude to the
+ * octahedral square, that the square's edges do not show, and that directions are chosen as they shine. Truths are sums over
+ * the picture in double. */
 #include "sky.h"
 
 #include <stdarg.h>
@@ -88,7 +89,8 @@ static void a_smooth_picture_is_seen_where_it_is(void **state) {
         sky s = make(&p, turns[k]);
         double worst = 0;
         for (int i = 0; i < 5000; i++) {
-            const double y = 2 * noise(3u * (uint32_t)i) - 1.0, b = 2 * PI * (double)noise(3u * (uint32_t)i + 1), r = sqrt(1 - y * y);
+            const double y = 2 * noise(3u * (uint32_t)i) - 1.0, b = 2 * PI * (double)noise(3u * (uint32_t)i + 1),
+                         r = sqrt(1 - y * y);
             const vec3 d = {(float)(r * cos(b)), (float)y, (float)(r * sin(b))}, c = sky_radiance(&s, d);
             /* What is seen in direction d is what the picture has where d was before the turn about y. */
             const double x = (double)d.x * cos(a) - (double)d.z * sin(a), z = (double)d.x * sin(a) + (double)d.z * cos(a);
@@ -148,7 +150,8 @@ static void edges_of_the_square_do_not_show(void **state) {
     for (int i = 0; i < 2000; i++) {
         const float a = (float)(PI / 2 + PI * (i + 0.5) / 2000), tiny = 1e-5f;
         const bool flat = i % 2;
-        const vec3 d = {flat ? cosf(a + 1.5707963f) : tiny, flat ? tiny : cosf(a + 1.5707963f), -fabsf(sinf(a + 1.5707963f)) - tiny};
+        const vec3 d = {flat ? cosf(a + 1.5707963f) : tiny, flat ? tiny : cosf(a + 1.5707963f),
+                        -fabsf(sinf(a + 1.5707963f)) - tiny};
         const vec3 e = {flat ? d.x : -tiny, flat ? -tiny : d.y, d.z};
         const vec3 c = sky_radiance(&s, vec3_unit(d)), f = sky_radiance(&s, vec3_unit(e));
         worst = fmax(worst, fabs((double)c.x - (double)f.x));
@@ -177,8 +180,9 @@ static void directions_follow_radiance_and_give_back_all_of_it(void **state) {
             double power = 0;
             for (uint32_t i = 0; i < samples; i++) {
                 const vit_emitter *e = sets + k * samples + i;
-                const double l = sqrt((double)e->position[0] * (double)e->position[0] + (double)e->position[1] * (double)e->position[1] +
-                                      (double)e->position[2] * (double)e->position[2]);
+                const double l =
+                    sqrt((double)e->position[0] * (double)e->position[0] + (double)e->position[1] * (double)e->position[1] +
+                         (double)e->position[2] * (double)e->position[2]);
                 assert_true(fabs(l - 1) < 1e-5 && e->radius2 == 0.0f && e->normal[0] == 0.0f);
                 assert_true(e->position[1] > -0.08f);
                 power += (double)e->power[0];
@@ -207,7 +211,8 @@ static void a_sky_without_a_picture_is_even(void **state) {
                 mean[c] += (double)sets[16 * k + i].position[c] / 16;
         }
         close_to(power, 4 * PI * 3, 1e-5);
-        assert_true(fabs(mean[0]) < 0.15 && fabs(mean[1]) < 0.15 && fabs(mean[2]) < 0.15); /* of random ones the worst is 0.35 off */
+        assert_true(fabs(mean[0]) < 0.15 && fabs(mean[1]) < 0.15 &&
+                    fabs(mean[2]) < 0.15); /* of random ones the worst is 0.35 off */
     }
     assert_true(sky_radiance(&s, (vec3){0, 1, 0}).y == 2.0f);
     sky_free(&s);
