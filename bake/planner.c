@@ -20,7 +20,7 @@ static bool gives_photons(const scene *s, uint32_t light) {
     return s->automatic || s->lights[light].photons;
 }
 
-/* Mean power over the path, 2 pi W summed over channels: what a light's share of the paths follows. */
+/* Mean power over the path, W / 2 pi, summed over channels: what a light's share of the paths follows. */
 static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
     double sum = 0;
     for (uint32_t f = 0; f < frames; f++) {

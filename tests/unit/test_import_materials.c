@@ -223,10 +223,10 @@ static void smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it(void **state
     model_free(&m);
 }
 
-/* 2 x 1 texels, TGA: red (255, 0, 0) and (0, 255, 128); sRGB means 0.5, 0.5, 0.108; as stored 0.5, 0.5, 0.251. */
+/* 2 x 1 texels, TGA: red (255, 0, 0) and (0, 255, 128), the latter with alpha 0.4. */
 static void put_image(void) {
     static const uint8_t bytes[26] = {0, 0, 2, 0,  0,    0, 0, 0,   0,   0,   0,   0, 2,
-                                      0, 1, 0, 32, 0x28, 0, 0, 255, 255, 128, 255, 0, 255};
+                                      0, 1, 0, 32, 0x28, 0, 0, 255, 255, 128, 255, 0, 102};
     FILE *f = fopen(FILE_OF("t.tga"), "wb");
     assert_non_null(f);
     assert_int_equal(fwrite(bytes, 1, sizeof bytes, f), sizeof bytes);
@@ -285,6 +285,36 @@ static void transmission_is_glass(void **state) {
     model_free(&m);
     import_gltf(PBR("\"metallicFactor\":0") "," TRANSMITS("0.4", ""), USED, "", &m);
     assert_true(m.materials[0].kind == VIT_MATTE);
+    model_free(&m);
+}
+
+static void what_is_clear_by_alpha_as_well_is_glass_and_no_hole(void **state) {
+    model m;
+    (void)state;
+    put_image();
+    import_gltf(PBR("\"baseColorTexture\":{\"index\":0}") ",\"alphaMode\":\"BLEND\"," TRANSMITS("1", ""), USED IMAGE, "", &m);
+    assert_true(m.materials[0].kind == VIT_THIN_GLASS && m.materials[0].cutoff == 0.0f && m.materials[0].image < 0);
+    assert_true(near3(m.materials[0].specular, 0.5, 0.5, 0.5 * pow((128 / 255.0 + 0.055) / 1.055, 2.4)));
+    model_free(&m);
+}
+
+static void specular_and_glossiness_make_a_lobe(void **state) {
+    model m;
+    (void)state;
+    put_image();
+    import_gltf("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.75,1],"
+                "\"specularFactor\":[0.25,0.5,0.125],"
+                "\"glossinessFactor\":0.5}}",
+                ",\"extensionsUsed\":[\"KHR_materials_pbrSpecularGlossiness\"]", "", &m);
+    assert_true(m.materials[0].exponent == 6.0f && near3(m.materials[0].specular, 0.25, 0.5, 0.125));
+    assert_true(near3(m.materials[0].albedo, 0.25, 0.125, 0.375));
+    model_free(&m);
+    /* Glossiness is the texture's alpha: 0.7 on average. */
+    import_gltf("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"specularFactor\":[0.25,0.5,0.125],"
+                "\"specularGlossinessTexture\":{\"index\":0}}}",
+                ",\"extensionsUsed\":[\"KHR_materials_pbrSpecularGlossiness\"]" IMAGE, "", &m);
+    assert_true(fabs((double)m.materials[0].exponent - (0.5 / pow(0.3, 4) - 2)) < 1e-2);
+    assert_true(near3(m.materials[0].specular, 0.125, 0.25, 0.0625 * pow((128 / 255.0 + 0.055) / 1.055, 2.4)));
     model_free(&m);
 }
 
@@ -398,6 +428,8 @@ int main(void) {
         cmocka_unit_test(smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it),
         cmocka_unit_test(lobes_take_the_mean_of_textures),
         cmocka_unit_test(transmission_is_glass),
+        cmocka_unit_test(what_is_clear_by_alpha_as_well_is_glass_and_no_hole),
+        cmocka_unit_test(specular_and_glossiness_make_a_lobe),
         cmocka_unit_test(a_scene_file_makes_any_material_of_any),
         cmocka_unit_test(what_emits_is_an_area_light_unless_told_otherwise),
         cmocka_unit_test(the_glossy_cornell_box_has_two_lobes),

@@ -59,7 +59,7 @@ static void plan_scene(const char *text, planned *x) {
     if (status == VIT_OK)
         status = atlas_pack(&x->m, &x->a, &why);
     if (status == VIT_OK)
-        status = plan_make(&x->s, &x->m, &x->t, &x->a, &x->b, &x->g, &r, &x->p, &why);
+        status = plan_make(&x->s, &x->m, &x->t, &x->a, &x->b, &x->g, &r, &(const sky){0}, 1, &x->p, &why);
     if (status != VIT_OK)
         print_error("%s\n", why.text);
     assert_int_equal(status, VIT_OK);

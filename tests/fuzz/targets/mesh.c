@@ -27,6 +27,7 @@ typedef struct bake {
     reach r;
     atlas a;
     plan p;
+    vit_emitter *emitters;
     vit_photon *photons;
     cells c;
     vit_gold gold;
@@ -55,7 +56,12 @@ static vit_status make_shape(bake *k, vit_text *why) {
 
 static vit_status make_photons(bake *k, vit_text *why) {
     vit_scene *s = &k->p.scene;
-    const photons_light light = {.light = k->t.lights[0], .paths = k->p.baked_paths[0]};
+    photons_light lights[2];
+    uint32_t count = 0;
+    if (k->p.baked_paths[0] > 0)
+        lights[count++] = (photons_light){.light = k->t.lights[0], .paths = k->p.baked_paths[0]};
+    if (k->p.area_paths > 0)
+        lights[count++] = (photons_light){.paths = k->p.area_paths, .area = &k->p.area};
     const photons_input in = {.triangles = k->g.triangles,
                               .attributes = k->g.attributes,
                               .triangle_count = k->m.triangles,
@@ -67,8 +73,8 @@ static vit_status make_photons(bake *k, vit_text *why) {
                               .effects = s->effects,
                               .bounces = s->bounces,
                               .cells = k->c.count ? &k->c : NULL,
-                              .lights = &light,
-                              .light_count = 1};
+                              .lights = lights,
+                              .light_count = count};
     free(k->photons);
     vit_status status = photons_bake(&in, 1, &k->photons, &s->baked, why);
     if (status == VIT_OK && in.cells)
@@ -94,6 +100,15 @@ static vit_status make_zones(bake *k, vit_text *why) {
     return status == VIT_OK ? make_photons(k, why) : status;
 }
 
+/* Points on area lights. */
+static void make_emitters(bake *k) {
+    const uint32_t samples = k->p.scene.area_samples;
+    k->emitters = malloc(((size_t)samples + 1) * VIT_PATTERNS * sizeof *k->emitters);
+    FUZZ_HOLDS(k->emitters);
+    if (samples > 0)
+        emitters_sets(&k->p.area, samples, k->emitters);
+}
+
 /* bounds.c would measure these on a device. */
 static void set_bounds(vit_scene *s) {
     s->slice_count = 16;
@@ -114,6 +129,7 @@ static void check_pack(bake *k) {
                                              [VIT_SECTION_ATLS] = k->a.texels,
                                              [VIT_SECTION_SIDE] = k->c.sides,
                                              [VIT_SECTION_CELL] = k->c.cells,
+                                             [VIT_SECTION_EMIT] = k->emitters,
                                              [VIT_SECTION_PHOT] = k->photons,
                                              [VIT_SECTION_GOLD] = &k->gold}};
     vit_text why = {""};
@@ -130,6 +146,7 @@ static void check_pack(bake *k) {
 }
 
 static void bake_free(bake *k) {
+    free(k->emitters);
     free(k->photons);
     cells_free(&k->c);
     plan_free(&k->p);
@@ -152,8 +169,10 @@ static void bake_model(bake *k) {
         status = make_photons(k, &why);
     if (status == VIT_OK && k->whole && (k->p.scene.effects & VIT_BIT(PHOTONS)))
         status = make_zones(k, &why);
-    if (status == VIT_OK)
+    if (status == VIT_OK) {
+        make_emitters(k);
         check_pack(k);
+    }
     else
         fuzz_one_line(why.text, sizeof why.text);
     bake_free(k);
