@@ -188,7 +188,8 @@ static void player_close(player *p) {
 }
 
 static void run(csv *c, size_t i) {
-    pipeline p = {.device = VIT_DEVICE_HOST};
+    progress silent = progress_make(true);
+    pipeline p = {.device = VIT_DEVICE_HOST, .progress = &silent};
     pipeline_packed packed;
     vit_text why = {""};
     write_scene(i);
