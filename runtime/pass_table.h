@@ -18,7 +18,7 @@
     B(accept), B(inverse_area)
 
 #define VIT_PASSES(X)                                                                                                         \
-    X(visibility, ALWAYS, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance),                                                \
+    X(visibility, ALWAYS, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance),                                                \
       ARGS_RAYS, B(cameras), V(frame), B(hit_triangle), B(hit_distance), ARGS_WORK)                                           \
     X(samples, ALWAYS, PER_SAMPLE, ONCE, W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area),       \
       ARGS_SURFACE, B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(sides), B(cells), B(position), B(normal),       \
