@@ -23,28 +23,92 @@ kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, u
     WORK_END
 }
 #else
+/* Bounds of the bundle's directions along one axis; 0: they have both signs, or nearly. *least2: the least square of them, added up. */
+static inline int view_axis(global const vit_camera *camera, int k, float x, float y, float reach, float largest, bundle_axis *axis, float *least2)
+{
+    float right = camera->right[k], down = camera->down[k], middle = fma(y + 4.0f, down, fma(x + 4.0f, right, camera->corner[k]));
+    float size = vit_max(right, -right) + vit_max(down, -down), corner = vit_max(camera->corner[k], -camera->corner[k]);
+    float half_width = fma(size, 3.5f, BUNDLE_SLACK * fma(size, reach, corner)), eye = camera->eye[k];
+    float lo = middle - half_width, hi = middle + half_width, least = vit_max(lo, -hi);
+    if (!(least > 0))
+        return 0;
+    *axis = bundle_axis_of(eye, lo, hi, BUNDLE_SLACK * (largest + vit_max(eye, -eye)));
+    *least2 = fma(least, least, *least2);
+    return 1;
+}
+
+/* The rays of packet i. */
+static inline ray_packet view_rays(global const vit_scene *scene, global const vit_camera *camera, uint bundle, uint i, li *inside)
+{
+    li x, y;
+    l_pixel(scene, bundle_sample(scene, bundle, i), &x, &y);
+    *inside = l_inside(scene, x, y);
+    return ray_make(lv3_load(camera->eye), l_camera_ray(camera, x, y));
+}
+
 kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, uint frame, global uint *hit_triangle, global float *hit_distance WORK_PARAMETERS)
 {
-    uint bundle = (uint)get_global_id(0);
-    if (bundle * (VIT_BUNDLE * VIT_LANES) >= scene->samples)
+    uint bundle = (uint)get_global_id(0), px, py;
+    if (bundle * 64 >= scene->samples)
         return;
     global const vit_camera *camera = cameras + frame;
-    ray_bundle b;
+    ray_packet ray[VIT_BUNDLE];
+    lf t[VIT_BUNDLE];
+    li triangle[VIT_BUNDLE], inside[VIT_BUNDLE];
+    int made = 0;
     WORK_BEGIN
-    for (uint i = 0; i < VIT_BUNDLE; i++) {
-        li x, y;
-        l_pixel(scene, bundle_first(scene, bundle, i), &x, &y);
-        b.active[i] = l_inside(scene, x, y);
-        b.t[i] = L_F(3e38f);
-        b.ray[i] = ray_make(lv3_load(camera->eye), l_camera_ray(camera, x, y));
-        WORK_LANES(view_rays, b.active[i]);
+    bundle_pixel(scene, bundle, &px, &py);
+    if (px < scene->width && py < scene->height) {
+        bundle_bounds bounds;
+        float reach = (float)(scene->width + scene->height), largest = bundle_largest(nodes), least2 = 0;
+        int one_octant = view_axis(camera, 0, (float)px, (float)py, reach, largest, &bounds.x, &least2) &&
+                         view_axis(camera, 1, (float)px, (float)py, reach, largest, &bounds.y, &least2) &&
+                         view_axis(camera, 2, (float)px, (float)py, reach, largest, &bounds.z, &least2);
+        if (one_octant) {
+            float scale = vit_div(1.0f + 16 * BUNDLE_SLACK, vit_sqrt(least2)); /* from distances to multiples of directions */
+            bundle_walk walk;
+            global const float *box;
+            uint leaf;
+            bounds.limit = 3e38f;
+            bundle_begin(&bounds, &walk);
+            while ((leaf = bundle_leaf(nodes, &bounds, &walk, &box)) != 0) {
+                if (!made) /* many bundles see no leaf */
+                    for (uint i = 0; i < VIT_BUNDLE; i++) {
+                        ray[i] = view_rays(scene, camera, bundle, i, inside + i);
+                        t[i] = l_sel(inside[i], L_F(3e38f), L_F(-1));
+                        triangle[i] = L_I((int)VIT_NONE);
+                    }
+                made = 1;
+                int any = 0;
+                for (uint i = 0; i < VIT_BUNDLE; i++) {
+                    li in = bundle_box(ray + i, box, &walk, inside[i], t[i]);
+                    if (l_any(in))
+                        any |= bundle_leaf_nearest(RAY_SCENE, ray + i, leaf, in, t + i, triangle + i);
+                }
+                if (any) {
+                    lf most = t[0];
+                    for (uint i = 1; i < VIT_BUNDLE; i++)
+                        most = l_max(most, t[i]);
+                    float limit = as_float(l_reduce_max(L_AS_INT(most)));
+                    bounds.limit = limit < 1e38f ? limit * scale : 3e38f;
+                }
+            }
+        } else {
+            for (uint i = 0; i < VIT_BUNDLE; i++) {
+                ray[i] = view_rays(scene, camera, bundle, i, inside + i);
+                t[i] = L_F(3e38f);
+                ray_nearest(RAY_SCENE, ray + i, inside[i], t + i, triangle + i);
+            }
+            made = 1;
+        }
     }
-    bundle_nearest(RAY_SCENE, &b);
     for (uint i = 0; i < VIT_BUNDLE; i++) {
-        uint first = bundle_first(scene, bundle, i);
-        L_STORE(L_AS_UINT(b.triangle[i]), hit_triangle + first);
-        L_STORE(b.t[i], hit_distance + first);
-        WORK_TRACED(b.ray[i]);
+        uint first = bundle_sample(scene, bundle, i);
+        L_STORE(made ? L_AS_UINT(triangle[i]) : L_U(VIT_NONE), hit_triangle + first);
+        L_STORE(made ? l_sel(inside[i], t[i], L_F(3e38f)) : L_F(3e38f), hit_distance + first);
+        if (made) {
+            WORK_TRACED(ray[i]);
+        }
     }
     WORK_END
 }
