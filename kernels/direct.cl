@@ -23,7 +23,7 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
     return l_div(window * window, d2);
 }
 
-#if VIT_WITH(LIGHTS)
+#if VIT_WITH(LIGHTS) && VIT_BUNDLE == 1
 kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
                          global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
 {
@@ -55,6 +55,67 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI));
     lv3 out = lv3_load_planes(direct, n, first);
     lv3_store_planes(lv3_set(fma(a.x, sum.x, out.x), fma(a.y, sum.y, out.y), fma(a.z, sum.z, out.z)), direct, n, first);
+    WORK_END
+}
+#elif VIT_WITH(LIGHTS)
+/* The same for a bundle. */
+kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *hit_triangle,
+                         global const float *position, global const uint *normal, global const uint *albedo, global float *direct WORK_PARAMETERS)
+{
+    uint bundle = (uint)get_global_id(0), n = scene->samples;
+    if (bundle * 64 >= n)
+        return;
+    li hit[VIT_BUNDLE], lit[VIT_BUNDLE], all = L_I(0);
+    for (uint i = 0; i < VIT_BUNDLE; i++) {
+        hit[i] = L_NE(L_AS_INT(L_LOAD(hit_triangle + bundle_sample(scene, bundle, i))), L_I((int)VIT_NONE));
+        all |= hit[i];
+    }
+    if (!l_any(all))
+        return;
+    ray_packet ray[VIT_BUNDLE];
+    lv3 sum[VIT_BUNDLE];
+    lf d[VIT_BUNDLE], e[VIT_BUNDLE], x[VIT_BUNDLE], y[VIT_BUNDLE], z[VIT_BUNDLE];
+    float least = scene->ray_offset * 0.0625f, least2 = least * least; /* of distances, relative to the scene's size */
+    WORK_BEGIN
+    for (uint i = 0; i < VIT_BUNDLE; i++)
+        sum[i] = lv3_set(L_F(0), L_F(0), L_F(0));
+    for (uint k = 0; k < scene->lights; k++) {
+        global const vit_light *light = lights + (size_t)frame * scene->lights + k;
+        all = L_I(0);
+        for (uint i = 0; i < VIT_BUNDLE; i++) {
+            uint first = bundle_sample(scene, bundle, i);
+            lit[i] = L_I(0);
+            if (!l_any(hit[i]))
+                continue;
+            lv3 p = sample_position(scene, position, first), s = l_decode_normal(L_LOAD(normal + first)), to = lv3_sub(lv3_load(light->position), p);
+            lf d2 = l_max(lv3_dot(to, to), L_F(least2));
+            d[i] = l_sqrt(d2);
+            lv3 l = lv3_scale(to, l_div(1.0f, d[i]));
+            e[i] = l_max(lv3_dot(s, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+            lit[i] = hit[i] & L_GT(e[i], L_F(0));
+            if (!l_any(lit[i]))
+                continue;
+            all |= lit[i];
+            x[i] = to.x;
+            y[i] = to.y;
+            z[i] = to.z;
+            ray[i] = ray_make(p, l);
+            WORK_LANES(shadow_rays, lit[i]);
+        }
+        if (!l_any(all))
+            continue;
+        bundle_shadows(RAY_SCENE, ray, d, x, y, z, light->position, lit);
+        for (uint i = 0; i < VIT_BUNDLE; i++)
+            if (l_any(lit[i]))
+                sum[i] = lv3_along(sum[i], lv3_load(light->intensity), l_sel(lit[i], e[i], L_F(0)));
+    }
+    for (uint i = 0; i < VIT_BUNDLE; i++) {
+        uint first = bundle_sample(scene, bundle, i);
+        if (!l_any(hit[i]))
+            continue;
+        lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), out = lv3_load_planes(direct, n, first);
+        lv3_store_planes(lv3_set(fma(a.x, sum[i].x, out.x), fma(a.y, sum[i].y, out.y), fma(a.z, sum[i].z, out.z)), direct, n, first);
+    }
     WORK_END
 }
 #endif

@@ -81,7 +81,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, global const vit_camera *cameras, u
                 made = 1;
                 int any = 0;
                 for (uint i = 0; i < VIT_BUNDLE; i++) {
-                    li in = bundle_box(ray + i, box, &walk, inside[i], t[i]);
+                    li in = bundle_box(ray + i, box, walk.nx, walk.ny, walk.nz, inside[i], t[i]);
                     if (l_any(in))
                         any |= bundle_leaf_nearest(RAY_SCENE, ray + i, leaf, in, t + i, triangle + i);
                 }

@@ -23,7 +23,7 @@
     X(samples, ALWAYS, PER_SAMPLE, ONCE, W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area),       \
       ARGS_SURFACE, B(cameras), V(frame), B(hit_triangle), B(hit_distance), B(sides), B(cells), B(position), B(normal),       \
       B(albedo), B(direct), B(accept), B(inverse_area), ARGS_WORK)                                                            \
-    X(direct_light, ON(LIGHTS), PER_SAMPLE, ONCE, W(direct),                                                                  \
+    X(direct_light, ON(LIGHTS), PER_BUNDLE, ONCE, W(direct),                                                                  \
       ARGS_RAYS, B(lights), V(frame), B(hit_triangle), B(position), B(normal), B(albedo), B(direct), ARGS_WORK)               \
     X(clear_masks, ON(PHOTONS), PER_MASK_WORD, ONCE, W(masks) | W(counters),                                                  \
       B(scene), B(masks), B(counters))                                                                                        \
