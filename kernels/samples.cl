@@ -11,7 +11,7 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
     l_pixel(scene, first, &x, &y);
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
     li hit = L_NE(triangle, L_I((int)VIT_NONE));
-    lv3 light = lv3_load(scene->background);
+    lv3 light = lv3_load(scene->background); /* radiance that needs no light source: emission and background; direct light is added to it */
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
     if (l_any(hit)) {
@@ -23,7 +23,7 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
-        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(0)), albedo + first);
+        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(VIT_SAMPLE_NOTHING)), albedo + first);
         light = lv3_sel(hit, s.emission, light);
         if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) {
             cell_place cell = cell_at(sides, hit, triangle, s.back, s.b1, s.b2);
@@ -32,17 +32,17 @@ kernel void samples(SURFACE_PARAMETERS, global const vit_camera *cameras, uint f
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-    } else {
+        lv3_store_planes(light, direct, n, first);
+    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING)))) { /* else all this stands there, of a frame before */
         lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
         sample_store_position(scene, zero, zero, L_I(0), position, first);
         L_STORE(L_U(0), normal + first);
-        L_STORE(L_U(0), albedo + first);
+        L_STORE(L_U(VIT_SAMPLE_NOTHING), albedo + first);
         if (VIT_EFFECT_ZONES)
             L_STORE(L_U(0), accept + first);
         if (VIT_EFFECT_AREA)
             L_STORE(L_F(0), inverse_area + first);
+        lv3_store_planes(light, direct, n, first);
     }
-    /* Radiance that needs no light source: emission and background. Direct light is added to it. */
-    lv3_store_planes(light, direct, n, first);
     WORK_END
 }
