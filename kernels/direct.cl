@@ -81,7 +81,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         sum[i] = lv3_set(L_F(0), L_F(0), L_F(0));
     for (uint k = 0; k < scene->lights; k++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + k;
-        all = L_I(0);
+        uint cast = 0; /* packets with rays */
         for (uint i = 0; i < VIT_BUNDLE; i++) {
             uint first = bundle_sample(scene, bundle, i);
             lit[i] = L_I(0);
@@ -95,19 +95,23 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             lit[i] = hit[i] & L_GT(e[i], L_F(0));
             if (!l_any(lit[i]))
                 continue;
-            all |= lit[i];
+            cast |= 1u << i;
             x[i] = to.x;
             y[i] = to.y;
             z[i] = to.z;
             ray[i] = ray_make(p, l);
             WORK_LANES(shadow_rays, lit[i]);
         }
-        if (!l_any(all))
+        if (cast == 0)
             continue;
-        bundle_shadows(RAY_SCENE, ray, d, x, y, z, light->position, lit);
-        for (uint i = 0; i < VIT_BUNDLE; i++)
+        bundle_shadows(RAY_SCENE, ray, cast, d, x, y, z, light->position, lit);
+        for (uint i = 0; i < VIT_BUNDLE; i++) {
             if (l_any(lit[i]))
                 sum[i] = lv3_along(sum[i], lv3_load(light->intensity), l_sel(lit[i], e[i], L_F(0)));
+            if (cast >> i & 1u) {
+                WORK_TRACED(ray[i]);
+            }
+        }
     }
     for (uint i = 0; i < VIT_BUNDLE; i++) {
         uint first = bundle_sample(scene, bundle, i);
