@@ -183,8 +183,9 @@ static int facing(vec3 n) {
     return 2 * axis + ((axis == 0 ? n.x : axis == 1 ? n.y : n.z) < 0.0f);
 }
 
-/* What shines in each of the six directions, 1 W/sr summed over channels, is the same in every set and as much as it should be, so that
- * pixels side by side do not differ because of a point more on this side of the lamp or that; if no set is without such points, and none of them may lie in a hole. */
+/* What shines in each of the six directions, W/sr summed over channels, is the same in every set and as much as it should be, so that
+ * pixels side by side do not differ because of a point more on this side of the lamp or that. If a set has no point for a direction all
+ * sets together shine as much as they should. Lamps with holes are left alone. */
 static void even_out(const emitters *e, uint32_t samples, vit_emitter *out) {
     double whole[6] = {0}, found[VIT_PATTERNS][6] = {{0}};
     for (uint32_t i = 0; i < e->count; i++) {
@@ -195,10 +196,15 @@ static void even_out(const emitters *e, uint32_t samples, vit_emitter *out) {
         const vit_emitter *p = out + i;
         found[i / samples][facing(vec3_load(p->normal))] += (double)p->power[0] + (double)p->power[1] + (double)p->power[2];
     }
-    for (int k = 0; k < 6; k++)
-        for (uint32_t set = 0; set < VIT_PATTERNS; set++)
-            if (!(found[set][k] > 0))
-                whole[k] = 0;
+    for (int k = 0; k < 6; k++) {
+        double all = 0, least = INFINITY;
+        for (uint32_t set = 0; set < VIT_PATTERNS; set++) {
+            all += found[set][k] / VIT_PATTERNS;
+            least = fmin(least, found[set][k]);
+        }
+        for (uint32_t set = 0; set < VIT_PATTERNS && !(least > 0); set++)
+            found[set][k] = all;
+    }
     for (uint32_t i = 0; i < VIT_PATTERNS * samples; i++) {
         const int k = facing(vec3_load(out[i].normal));
         const float factor = whole[k] > 0 ? (float)(whole[k] / found[i / samples][k]) : 1.0f;

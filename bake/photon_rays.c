@@ -9,6 +9,7 @@ typedef struct RTCRayQueryContext embree_context;
 typedef struct RTCIntersectContext embree_context;
 #endif
 
+#define ONE_PLACE 0x1p-6f /* of ray_offset: faces so close lie in one place, and the first of them is seen */
 #define TINY 1e-18f /* a direction component nearer to zero than this counts as this; RAY_TINY of kernels/ray.clh */
 
 /* One ray on its way, as the filter below sees it. */
@@ -101,9 +102,8 @@ uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, 
 bool photon_rays_covered(const photon_rays *r, uint32_t triangle, vec3 p, vec3 n) {
     float t = 0.0f;
     const uint32_t other = nearest_but(r, triangle, p, vec3_scale(n, -1.0f), &t);
-    if (other == VIT_NONE || t > 1.25f * r->s->ray_offset)
-        return false;
-    return other < triangle || !r->s->materials[r->s->attributes[other].material & VIT_MATERIAL_INDEX].lights;
+    const float own = r->s->ray_offset;
+    return other != VIT_NONE && (other < triangle ? t < own * (1.0f + ONE_PLACE) : t < own * (1.0f - ONE_PLACE));
 }
 
 /* For any hit: does this one count? Called only in scenes with cut-outs. */

@@ -17,7 +17,7 @@ void photon_rays_close(photon_rays *r);
  * of threads at once. The answer is a function of ray and triangles alone: of equally near triangles it is the first. */
 uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance);
 /* Is the place of `triangle` from which p was moved by ray_offset along the unit normal n covered by another face: one that lies between
- * the two, or in the same place, be it a wall or a second face of the same lamp? */
+ * the two, or in the same place and before it in the pack, so that this one is not seen there? */
 bool photon_rays_covered(const photon_rays *r, uint32_t triangle, vec3 p, vec3 n);
 /* Is there an opaque hit within `distance` metres along the unit direction? Any number of threads at once. */
 bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, float distance);

@@ -17,6 +17,7 @@ typedef struct RTCIntersectContext embree_context;
 #define EDGE 1e-4f
 #define GLASS_MIRRORS 0.25f /* of the light that may pass: more than it does, but both ways are looked at */
 #define LONGEST 32u         /* mirrors and panes in a row */
+#define ONE_PLACE 0x1p-6f   /* of ray_offset: faces so close lie in one place, and the first of them is seen */
 
 static vec scaled_sum(vec a, float s, vec b) {
     return (vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
@@ -242,7 +243,8 @@ bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance) 
 
 bool ray_scene_covered(const ray_scene *s, uint32_t side, vec p) {
     const vec n = side_normal(s->g, side);
-    float t = 1.25f * s->g->ray_offset;
+    const float own = s->g->ray_offset;
+    float t = own * (1.0f + ONE_PLACE);
     const uint32_t other = cast_but(s, side / 2, p, (vec){-n.x, -n.y, -n.z}, &t);
-    return other < 2 * s->m->triangles && (other / 2 < side / 2 || !material_lights(side_material(s->m, s->g, other)));
+    return other < 2 * s->m->triangles && (other / 2 < side / 2 || t < own * (1.0f - ONE_PLACE));
 }

@@ -31,7 +31,7 @@ uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *di
 uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_t chance, float *distance);
 /* Does light get from p to what lies `distance` metres along the unit direction? Glass lets it pass. */
 bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance);
-/* Is the side covered by another face where p, a side_point(), stands before it? Faces of area lights with greater numbers do not cover. */
+/* Is the side covered by another face where p, a side_point(), stands before it? Of faces in one place the first is not. */
 bool ray_scene_covered(const ray_scene *s, uint32_t side, vec p);
 
 /* Dimension d (0..3) of point i of a well spread sequence of its own for each `stream`; 0 <= u < 1. */

@@ -75,18 +75,20 @@ vec3 sky_radiance(const sky *s, vec3 d) {
 
 /* ---- directions by importance ---- */
 
-/* Power that a texel's interpolated picture sends, summed over channels: the weights are the integral of bilinear interpolation. */
+/* Power that a texel's interpolated picture sends, W/m2 a channel and, returned, of all: each quarter's mean is what its middle has. */
 static double texel_power(const sky *s, int x, int y, double power[3]) {
-    static const double part[3] = {0.125, 0.75, 0.125};
     const double width = 2.0 / s->size;
-    double solid = 0.0;
-    (void)from_square((x + 0.5) * width - 1.0, (y + 0.5) * width - 1.0, &solid);
-    solid *= width * width;
     memset(power, 0, 3 * sizeof *power);
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++)
-            for (int k = 0; k < 3; k++)
-                power[k] += part[i + 1] * part[j + 1] * solid * (double)texel(s, x + i, y + j)->radiance[k];
+    for (int q = 0; q < 4; q++) {
+        const int across = q & 1 ? 1 : -1, down = q & 2 ? 1 : -1;
+        double solid = 0.0;
+        (void)from_square((x + 0.5 + 0.25 * across) * width - 1.0, (y + 0.5 + 0.25 * down) * width - 1.0, &solid);
+        solid *= 0.25 * width * width;
+        const float *own = texel(s, x, y)->radiance, *beside = texel(s, x + across, y)->radiance,
+                    *below = texel(s, x, y + down)->radiance, *corner = texel(s, x + across, y + down)->radiance;
+        for (int k = 0; k < 3; k++)
+            power[k] += solid * (0.5625 * (double)own[k] + 0.1875 * ((double)beside[k] + (double)below[k]) + 0.0625 * (double)corner[k]);
+    }
     return power[0] + power[1] + power[2];
 }
 
@@ -142,12 +144,11 @@ sky_ray sky_choose(const sky *s, double x, double y) {
         row += part(q[right], q[size + right], &y);
         column += right;
     }
-    const double chosen = level_of(s, s->size)[row * s->size + column] / s->weight[0], width = 2.0 / s->size;
-    double solid;
-    sky_ray r;
-    r.direction = from_square(((double)column + x) * width - 1.0, ((double)row + y) * width - 1.0, &solid);
-    r.power = vec3_scale(sky_radiance(s, r.direction), (float)(solid * width * width / chosen));
-    return r;
+    const double width = 2.0 / s->size;
+    double solid, power[3];
+    const double chosen = texel_power(s, (int)column, (int)row, power) / s->weight[0]; /* probability */
+    return (sky_ray){from_square(((double)column + x) * width - 1.0, ((double)row + y) * width - 1.0, &solid),
+                     {(float)(power[0] / chosen), (float)(power[1] / chosen), (float)(power[2] / chosen)}};
 }
 
 void sky_sets(const sky *s, uint32_t samples, vit_emitter *out) {

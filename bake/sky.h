@@ -28,7 +28,7 @@ vec3 sky_radiance(const sky *s, vec3 d);
 
 typedef struct sky_ray {
     vec3 direction; /* to the sky, unit */
-    vec3 power;     /* radiance / density of directions, W/m2 */
+    vec3 power;     /* radiance, the mean of the direction's texel, / density of directions, W/m2 */
 } sky_ray;
 
 /* The direction for 0 < x, y < 1: even over the unit square is dense in proportion to radiance. Not for a black sky. */

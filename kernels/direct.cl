@@ -208,14 +208,14 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global c
         if (sky)
             e = l_max(lv3_dot(s->n, l), L_F(0));
         else {
-            /* The part of the surface that the point stands for, as a disc on the way: never more than half a sphere of it. The point lies off
-             * the surface, by ray_offset: the light itself does not stand in the way. */
+            /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a sphere of it.
+             * The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
             lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
             to = lv3_sub(to, s->p);
             lf d2 = l_max(lv3_dot(to, to), L_F(least2));
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
-            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), d2 + L_GATHER(lf, p + 3, at));
+            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
         }
         li lit = s->hit & L_GT(e, L_F(0));
         if (!l_any(lit))

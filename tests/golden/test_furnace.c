@@ -19,6 +19,7 @@
 #define ALBEDO 0.5
 #define BOUNCES 8
 #define POWER 60.0 /* W a channel */
+#define GLOW 2.0   /* W/(m2 sr) */
 #define LIST_WITHIN 0.02
 #define BUCKETS_WITHIN 0.05
 
@@ -60,6 +61,18 @@ static void write_sphere(scene_lab *l, int n) {
     (void)fclose(f);
 }
 
+/* Walls that emit and light one another, each point of them the same: radiance L (1 + rho + rho^2 + ...), of which view samples see one
+ * reflection by points on the walls, and photons are the others. */
+static void write_glowing_scene(scene_lab *l) {
+    FILE *f = scene_lab_create(l, "glowing.cfg");
+    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"box.obj\"; } );\n", SIDE,
+                  SIDE, VIEWS);
+    write_views(f, eye);
+    (void)fprintf(f, "materials = ( { name = \"half\"; emission = [%.1f, %.1f, %.1f]; } );\n", GLOW, GLOW, GLOW);
+    (void)fprintf(f, "quality: { bounces = %d; tile = 8; radius = 0.1; photons = 65536; light_samples = 512; };\n", BOUNCES);
+    (void)fclose(f);
+}
+
 static int set_up(void **state) {
     static scene_lab lab;
     scene_lab_open(&lab);
@@ -72,6 +85,7 @@ static int set_up(void **state) {
     write_scene(&lab, "box.cfg", "box.obj", eye, false);
     write_scene(&lab, "box_moving.cfg", "box.obj", eye, true);
     write_scene(&lab, "sphere.cfg", "sphere.obj", centre, false);
+    write_glowing_scene(&lab);
     *state = &lab;
     return 0;
 }
@@ -100,6 +114,18 @@ static double box_ratio(scene_lab *l, const char *scene, const char *options) {
     const double ratio = light / box_area() / analytic(box_area());
     printf("box     %-44s %+.2f %%\n", options, 100 * (ratio - 1));
     return ratio;
+}
+
+/* Mean over the glowing box of a view's radiance. */
+static double glowing_mean(scene_lab *l, const char *view) {
+    static float pixels[FLOATS];
+    double light = 0;
+    scene_lab_play(l, view, pixels, FLOATS);
+    for (int i = 0; i < VIEWS; i++)
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++)
+                light += pixel_area(i, x, y) * (double)pixels[4 * ((i * SIDE + y) * SIDE + x)];
+    return light / box_area();
 }
 
 /* Distance, m, of what the middle of pixel (x, y) of view i sees from the nearest edge of the box. */
@@ -190,6 +216,17 @@ static void the_bucket_estimate_is_right_everywhere_in_a_sphere(void **state) {
     assert_true(sphere_deviation(*state, "--photons 65536 --radius 0.25 --estimate buckets") < BUCKETS_WITHIN);
 }
 
+static void walls_that_emit_light_one_another(void **state) {
+    scene_lab_bake(*state, "glowing.cfg", "");
+    double sum = GLOW * stored_albedo(ALBEDO), part = sum;
+    for (int k = 1; k < BOUNCES; k++)
+        sum += part *= ALBEDO;
+    const double direct = glowing_mean(*state, "direct") / (GLOW * (1 + stored_albedo(ALBEDO))), whole = glowing_mean(*state, "final") / (GLOW + sum);
+    printf("glowing box: direct %+.2f %%, whole %+.2f %%\n", 100 * (direct - 1), 100 * (whole - 1));
+    assert_true(fabs(direct - 1) < LIST_WITHIN);
+    assert_true(fabs(whole - 1) < LIST_WITHIN);
+}
+
 /* The source's buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
  * leaves out what lies round the corner. Neither is held to the truth. */
 static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state) {
@@ -231,6 +268,7 @@ int main(void) {
         cmocka_unit_test(the_bucket_estimate_keeps_all_light_in_a_box),
         cmocka_unit_test(the_list_estimate_is_right_everywhere_in_a_sphere),
         cmocka_unit_test(the_bucket_estimate_is_right_everywhere_in_a_sphere),
+        cmocka_unit_test(walls_that_emit_light_one_another),
         cmocka_unit_test(effective_areas_mend_edges),
         cmocka_unit_test(effective_areas_keep_the_light),
         cmocka_unit_test(raw_buckets_and_the_flattened_kernel_are_only_reported),

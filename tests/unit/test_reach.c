@@ -14,13 +14,16 @@
 #define MAX_TRIANGLES 40000
 #define MAX_FRAMES 100
 
+enum { OPAQUE, CUT_OUT, MIRROR, GLASS, THIN_GLASS, LAMP };
+
 typedef struct fixture {
     model m;
-    model_material materials[2]; /* opaque, cut out */
+    model_material materials[6]; /* opaque, cut out, mirror, glass, thin glass, lamp */
     bvh b;
     geometry g;
     vit_light lights[MAX_FRAMES];
     uint32_t frames;
+    bool sky;
     uint32_t flags[MAX_TRIANGLES]; /* found, by the triangle's number in the model */
     reach r;
 } fixture;
@@ -35,8 +38,14 @@ static fixture *make(void) {
     f->m.material = calloc(MAX_TRIANGLES, sizeof(uint32_t));
     assert_true(f->m.position && f->m.normal && f->m.uv && f->m.index && f->m.material);
     f->m.materials = f->materials;
-    f->m.material_count = 2;
-    f->materials[0].image = f->materials[1].image = -1;
+    f->m.material_count = 6;
+    for (int i = 0; i < 6; i++)
+        f->materials[i] = (model_material){.image = -1, .exponent = 1.0f, .ior = 1.5f};
+    f->materials[MIRROR].kind = VIT_MIRROR;
+    f->materials[GLASS].kind = VIT_GLASS;
+    f->materials[THIN_GLASS].kind = VIT_THIN_GLASS;
+    f->materials[LAMP].emission[1] = 1.0f;
+    f->materials[LAMP].area_light = true;
     f->materials[1].cutoff = 0.5f;
     return f;
 }
@@ -96,15 +105,20 @@ static void add_light(fixture *f, float x, float y, float z) {
 }
 
 static void search(fixture *f, unsigned threads) {
-    const tracks t = {.lights = f->lights, .light_count = 1};
+    const tracks t = {.lights = f->lights, .light_count = f->frames > 0};
     vit_text why = {""};
     bvh_free(&f->b);
     geometry_free(&f->g);
     if (bvh_build(&f->m, 1, &f->b, &why) != VIT_OK || geometry_pack(&f->m, &f->b, &f->g, &why) != VIT_OK ||
-        reach_dark_sides(&f->m, &t, f->frames, false, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
+        reach_dark_sides(&f->m, &t, f->frames > 0 ? f->frames : 1, f->sky, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
         fail_msg("%s", why.text);
     for (uint32_t i = 0; i < f->m.triangles; i++)
         f->flags[f->b.order[i]] = f->g.attributes[i].material & (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
+}
+
+static void paint(fixture *f, uint32_t first, uint32_t count, uint32_t material) {
+    for (uint32_t i = first; i < first + count; i++)
+        f->m.material[i] = material;
 }
 
 static void expect(const fixture *f, uint32_t first, uint32_t count, uint32_t wanted) {
@@ -357,6 +371,102 @@ static void the_automatic_radius_follows_the_way_of_light_within_bounds(void **s
     assert_true(fabs(plan_radius(&room, 2000.0) - 0.6) < 0.001);
 }
 
+/* A box in a glass box, in a room with a lamp: glass lets light in, to both sides of what stands there, and is not dark itself. */
+static void light_gets_into_glass(void **state) {
+    (void)state;
+    for (uint32_t kind = GLASS; kind <= THIN_GLASS; kind++) {
+        fixture *f = make();
+        add_box(f, ROOM, 1);
+        const uint32_t glass = add_box(f, (const float[]){-1, 1, -1}, (const float[]){1, 3, 1}, 2),
+                       inner = add_box(f, (const float[]){-0.5f, 1.5f, -0.5f}, (const float[]){0.5f, 2.5f, 0.5f}, 4);
+        paint(f, glass, inner - glass, kind);
+        add_light(f, 4, 4, 4);
+        search(f, 2);
+        expect(f, glass, inner - glass, 0);
+        expect(f, inner, 6 * 32, VIT_SIDE_DARK_BACK);
+        assert_true(fabs(f->r.area - 2.0 * (400.0 + 6.0)) < 1e-3); /* without the glass */
+        drop(f);
+    }
+}
+
+/* Two rooms with a window between them. */
+static void light_passes_a_window(void **state) {
+    (void)state;
+    for (int window = 0; window < 2; window++) {
+        fixture *f = make();
+        add_box(f, ROOM, 4);
+        const uint32_t wall = f->m.triangles;
+        add_plate(f, (const float[]){0, 0, -5}, (const float[]){0, 0, 10}, (const float[]){0, 5, 0}, 4);
+        paint(f, wall + 10, 2, window ? THIN_GLASS : OPAQUE);
+        add_light(f, 3, 3, 1);
+        search(f, 2);
+        uint32_t beyond = 0, dark = 0;
+        for (uint32_t i = 0; i < wall; i++) { /* the room's far wall */
+            const float *p = f->m.position + 9 * (size_t)i;
+            if (p[0] > -4.99f || p[3] > -4.99f || p[6] > -4.99f)
+                continue;
+            beyond++;
+            dark += f->flags[i] == (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
+        }
+        assert_int_equal(beyond, 32);
+        assert_int_equal(dark, window ? 0 : 32);
+        drop(f);
+    }
+}
+
+/* Round a corner by a mirror alone: a narrow duct whose walls are mirrors but for a plate at its end. */
+static void mirrors_hand_light_on(void **state) {
+    (void)state;
+    for (int mirror = 0; mirror < 2; mirror++) {
+        fixture *f = make();
+        add_box(f, (const float[]){0, 0, 0}, (const float[]){6, 1, 1}, 1);
+        const uint32_t duct = f->m.triangles;
+        paint(f, 0, duct, mirror ? MIRROR : OPAQUE);
+        add_plate(f, (const float[]){5.9f, 0.2f, 0.2f}, (const float[]){0, 0, 0.6f}, (const float[]){0, 0.6f, 0}, 2);
+        add_light(f, 0.5f, 0.5f, 0.5f);
+        f->lights[0].kind = VIT_LIGHT_SPOT; /* away from the plate */
+        f->lights[0].direction[1] = 1.0f;
+        f->lights[0].cos_outer = 0.7f;
+        search(f, 2);
+        /* Both sides: the plate's back sees the end. */
+        expect(f, duct, 8, 0);
+        if (mirror)
+            assert_true(fabs(f->r.area - 2 * 0.36) < 1e-4);
+        drop(f);
+    }
+}
+
+/* A lamp of its own light: what it shines on is lit, what hangs before its other side, in a box, too; a covered side sends none. */
+static void area_lights_light(void **state) {
+    (void)state;
+    fixture *f = make();
+    const uint32_t room = add_box(f, ROOM, 1), box = add_box(f, (const float[]){-1, 1, -1}, (const float[]){1, 2, 1}, 4),
+                   lamp = f->m.triangles;
+    add_plate(f, (const float[]){3, 4.9999f, 3}, (const float[]){1, 0, 0}, (const float[]){0, 0, 1}, 2); /* on the ceiling */
+    paint(f, lamp, 8, LAMP);
+    search(f, 2);
+    expect(f, room, 12, VIT_SIDE_DARK_FRONT);
+    expect(f, box, 6 * 32, VIT_SIDE_DARK_BACK);
+    for (uint32_t i = lamp; i < lamp + 8; i++) /* one of the two: the one against the ceiling */
+        assert_true(f->flags[i] == VIT_SIDE_DARK_FRONT || f->flags[i] == VIT_SIDE_DARK_BACK);
+    drop(f);
+}
+
+static void the_sky_lights_what_is_open_to_it(void **state) {
+    (void)state;
+    fixture *f = make();
+    const uint32_t closed = add_box(f, (const float[]){-1, 0, -1}, (const float[]){1, 2, 1}, 2), open = f->m.triangles;
+    add_plate(f, (const float[]){2, 0, 2}, (const float[]){0, 0, 2}, (const float[]){2, 0, 0}, 2);
+    f->sky = true;
+    f->m.lo[0] = f->m.lo[2] = -1;
+    f->m.hi[0] = f->m.hi[2] = 4;
+    f->m.hi[1] = 2;
+    search(f, 2);
+    expect(f, closed, open - closed, VIT_SIDE_DARK_BACK);
+    expect(f, open, 8, 0);
+    drop(f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_inside_of_a_closed_box_is_dark_and_its_outside_lit),
@@ -374,6 +484,11 @@ int main(void) {
         cmocka_unit_test(light_goes_the_mean_chord_of_a_cube),
         cmocka_unit_test(light_that_leaves_the_scene_goes_no_way),
         cmocka_unit_test(the_automatic_radius_follows_the_way_of_light_within_bounds),
+        cmocka_unit_test(light_gets_into_glass),
+        cmocka_unit_test(light_passes_a_window),
+        cmocka_unit_test(mirrors_hand_light_on),
+        cmocka_unit_test(area_lights_light),
+        cmocka_unit_test(the_sky_lights_what_is_open_to_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

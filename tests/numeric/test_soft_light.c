@@ -1,0 +1,174 @@
+/* Light of surfaces and of the sky at view samples, against closed forms.
+ *
+ * What can go wrong: points on a lamp stand for too much or too little of it, crowd, or are shadowed by the lamp itself; the sky
+ * gives the wrong share. A rectangle's irradiance on a point is known (Lambert 1760: half of the radiance times the sum over its
+ * edges of the angle that the edge subtends times the cosine between the surface's normal and that of the plane through point and
+ * edge); an open plane under an even sky of radiance L gets pi L. Errors of single pixels are those of a sum over so many points,
+ * and must fall with their number; means over the picture are means over VIT_PATTERNS times as many. */
+#include "catalogue.h"
+#include "scene_lab.h"
+#include <math.h>
+
+#define PI 3.14159265358979
+#define ALBEDO (818.0 * 818.0 / 1023.0 / 1023.0) /* as view samples hold it */
+#define HEIGHT 1.0  /* of the lamp, m */
+enum { SIDE = 64, FLOATS = 4 * SIDE * SIDE };
+
+static const double half[2] = {0.4, 0.25}; /* of the lamp, m */
+
+static void write_scenes(scene_lab *l) {
+    FILE *f = scene_lab_create(l, "soft.mtl");
+    (void)fprintf(f, "newmtl floor\nKd %g %g %g\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n", ALBEDO, ALBEDO, ALBEDO);
+    (void)fclose(f);
+    f = scene_lab_create(l, "lamp.obj");
+    (void)fprintf(f,
+                  "mtllib soft.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nv %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\n"
+                  "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 5 6 7 8\n",
+                  -half[0], HEIGHT, -half[1], half[0], HEIGHT, -half[1], half[0], HEIGHT, half[1], -half[0], HEIGHT, half[1]);
+    (void)fclose(f);
+    f = scene_lab_create(l, "plane.obj");
+    (void)fprintf(f, "mtllib soft.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nusemtl floor\nf 4 3 2 1\n");
+    (void)fclose(f);
+}
+
+/* From just under the lamp, 90 degrees down: a pixel's edge is 2 * 0.9 / SIDE on the floor. */
+static void render(scene_lab *l, const char *mesh, const char *more, int samples, float *pixels) {
+    FILE *f = scene_lab_create(l, "scene.cfg");
+    (void)fprintf(f,
+                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"%s\"; } );\n%s\n"
+                  "camera: { near = 0.1; keys = ( { fov = 90.0; eye = [0.0, 0.9, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, 0.0, "
+                  "-1.0]; } ); };\nquality: { photons = 0; light_samples = %d; sky_samples = %d; };\n",
+                  SIDE, SIDE, mesh, more, samples, samples);
+    (void)fclose(f);
+    scene_lab_bake(l, "scene.cfg", "");
+    scene_lab_play(l, "direct", pixels, FLOATS);
+}
+
+/* Irradiance of the lamp, of radiance 1, at (x, 0, z) facing up. */
+static double lamp_irradiance(double x, double z) {
+    static const int sign[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        const int *a = sign[i], *b = sign[(i + 1) % 4];
+        const double p[3] = {a[0] * half[0] - x, HEIGHT, a[1] * half[1] - z}, q[3] = {b[0] * half[0] - x, HEIGHT, b[1] * half[1] - z};
+        const double n[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+        const double across = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), along = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        sum += atan2(across, along) * n[1] / across;
+    }
+    return 0.5 * fabs(sum);
+}
+
+static double place(int pixel) {
+    return 0.9 * ((2 * pixel + 1.0) / SIDE - 1);
+}
+
+typedef struct errors {
+    double rms, mean; /* relative: of pixels, and of their mean */
+} errors;
+
+static errors lamp_errors(scene_lab *l, int samples) {
+    static float pixels[FLOATS];
+    double square = 0, sum = 0, truth = 0;
+    render(l, "lamp.obj", "", samples, pixels);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double should = 5 * ALBEDO / PI * lamp_irradiance(place(i % SIDE), place(i / SIDE)), is = (double)pixels[4 * i];
+        square += pow(is / should - 1, 2) / (SIDE * SIDE);
+        sum += is;
+        truth += should;
+    }
+    return (errors){sqrt(square), fabs(sum / truth - 1)};
+}
+
+static void a_rectangle_lights_as_lambert_says(void **state) {
+    static const struct {
+        int samples;
+        double rms, mean;
+    } bounds[] = {{1, 2, 0.01}, {4, 0.4, 0.006}, {16, 0.08, 0.004}, {64, 0.02, 0.002}, {256, 0.004, 0.002}};
+    catalogue_point points[sizeof bounds / sizeof *bounds];
+    const size_t count = sizeof bounds / sizeof *bounds;
+    double last = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const errors e = lamp_errors(*state, bounds[i].samples);
+        char what[96];
+        (void)snprintf(what, sizeof what, "rectangle of %d points: pixels against the closed form", bounds[i].samples);
+        catalogue_row("soft light", what, e.rms, bounds[i].rms, "relative rms");
+        (void)snprintf(what, sizeof what, "rectangle of %d points: mean against the closed form", bounds[i].samples);
+        catalogue_row("soft light", what, e.mean, bounds[i].mean, "relative");
+        
+        assert_true(e.rms < 0.5 * last); /* random points: 0.5 */
+        last = e.rms;
+        points[i] = (catalogue_point){bounds[i].samples, e.rms};
+    }
+    catalogue_sweep("samples", "points on the lamp", "relative error of a pixel, rms", points, count);
+}
+
+static void an_even_sky_lights_a_plane_by_pi(void **state) {
+    static float pixels[FLOATS];
+    static const struct {
+        int samples;
+        double rms, mean;
+    } bounds[] = {{16, 0.1, 1e-6}, {256, 0.01, 1e-6}};
+    for (size_t k = 0; k < 2; k++) {
+        double square = 0, sum = 0;
+        render(*state, "plane.obj", "background = [3.0, 3.0, 3.0]; sky: { light = true; };", bounds[k].samples, pixels);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const double ratio = (double)pixels[4 * i] / (3 * ALBEDO);
+            square += pow(ratio - 1, 2) / (SIDE * SIDE);
+            sum += ratio / (SIDE * SIDE);
+        }
+        char what[96];
+        (void)snprintf(what, sizeof what, "even sky of %d directions on a plane: pixels against pi L", bounds[k].samples);
+        catalogue_row("soft light", what, sqrt(square), bounds[k].rms, "relative rms");
+        (void)snprintf(what, sizeof what, "even sky of %d directions on a plane: mean against pi L", bounds[k].samples);
+        catalogue_row("soft light", what, fabs(sum - 1), bounds[k].mean, "relative");
+    }
+}
+
+/* The sky's picture as view rays see it, against the picture itself: 1 + 0.5 sin of the longitude, 1 + 0.5 y, 1. */
+static void a_picture_is_seen_where_it_is(void **state) {
+    static float pixels[FLOATS];
+    enum { WIDE = 512, HIGH = 256 };
+    FILE *f = scene_lab_create(*state, "sky.hdr");
+    (void)fprintf(f, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", HIGH, WIDE);
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        const double angle = 2 * PI * ((i % WIDE + 0.5) / WIDE - 0.5), y = cos(PI * (i / WIDE + 0.5) / HIGH), value[3] = {1 + 0.5 * sin(angle), 1 + 0.5 * y, 1};
+        for (int k = 0; k < 3; k++)
+            (void)fputc((int)(value[k] * 128 + 0.5), f); /* (c + 0) / 256 * 2^(129 - 128) */
+        (void)fputc(129, f);
+    }
+    (void)fclose(f);
+    f = scene_lab_create(*state, "scene.cfg");
+    (void)fprintf(f,
+                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"plane.obj\"; translate = [0.0, -5.0, 40.0]; } );\n"
+                  "sky: { image = \"sky.hdr\"; scale = 2.0; rotate = 30.0; light = false; };\n"
+                  "camera: { near = 0.1; keys = ( { fov = 90.0; eye = [0.0, 0.0, 0.0]; target = [0.0, 0.0, -1.0]; } ); };\n"
+                  "quality: { photons = 0; };\n",
+                  SIDE, SIDE);
+    (void)fclose(f);
+    scene_lab_bake(*state, "scene.cfg", "");
+    scene_lab_play(*state, "final", pixels, FLOATS);
+    double worst = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double x = (2 * (i % SIDE) + 1.0) / SIDE - 1, y = 1 - (2 * (i / SIDE) + 1.0) / SIDE, l = sqrt(1 + x * x + y * y);
+        const double angle = atan2(x, 1) + 30 * PI / 180; /* the picture is turned about y as meshes are: to the left */
+        worst = fmax(worst, fabs((double)pixels[4 * i] - 2 * (1 + 0.5 * sin(angle))));
+        worst = fmax(worst, fabs((double)pixels[4 * i + 1] - 2 * (1 + 0.5 * y / l)));
+        worst = fmax(worst, fabs((double)pixels[4 * i + 2] - 2));
+    }
+    catalogue_row("soft light", "a sky of 512 x 256 texels as view rays see it", worst, 0.015, "W/(m2 sr)");
+}
+
+static int set_up(void **state) {
+    static scene_lab lab;
+    scene_lab_open(&lab);
+    write_scenes(&lab);
+    *state = &lab;
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_rectangle_lights_as_lambert_says),
+                                       cmocka_unit_test(an_even_sky_lights_a_plane_by_pi),
+                                       cmocka_unit_test(a_picture_is_seen_where_it_is)};
+    return cmocka_run_group_tests_name("soft light", tests, set_up, scene_lab_tear_down);
+}
