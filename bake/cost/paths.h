@@ -2,7 +2,7 @@
 #ifndef VIT_COST_PATHS_H
 #define VIT_COST_PATHS_H
 
-#include "emitters.h"
+#include "wide_lights.h"
 #include "reference.h"
 #include "shine.h"
 
@@ -28,7 +28,7 @@ typedef struct path_scene {
     atlas atlas;
     photon_scene scene;
     photon_rays rays;
-    emitters emitters;
+    wide_lights wide;
 } path_scene;
 
 /* Uses the sections in place; `out` must stay where it is until paths_close(). False: Embree fails, or memory; nothing to close. */

@@ -231,7 +231,7 @@ static void sky_direction(double u, double v, double d[3]) {
 }
 
 /* Irradiance of the picture on a floor, by quadrature over the sphere in latitude and longitude: another way than the reference's. */
-static double sky_irradiance(const vit_sky_texel *sky) {
+static double sky_irradiance(const vit_sky_texel *picture) {
     enum { STEPS = 1500 };
     double sum = 0;
     for (int i = 0; i < STEPS; i++)
@@ -241,7 +241,7 @@ static double sky_irradiance(const vit_sky_texel *sky) {
             const double size = fabs(d[0]) + fabs(d[1]) + fabs(d[2]), x = d[0] / size, y = d[1] / size;
             const double u = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x, v = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
             const double px = (u + 1) / 2 * SKY - 0.5, py = (v + 1) / 2 * SKY - 0.5, fx = px - floor(px), fy = py - floor(py);
-            const vit_sky_texel *t = sky + ((int)floor(py) + 1) * (SKY + 2) + (int)floor(px) + 1;
+            const vit_sky_texel *t = picture + ((int)floor(py) + 1) * (SKY + 2) + (int)floor(px) + 1;
             const double radiance = (1 - fy) * ((1 - fx) * (double)t[0].radiance[0] + fx * (double)t[1].radiance[0]) +
                                     fy * ((1 - fx) * (double)t[SKY + 2].radiance[0] + fx * (double)t[SKY + 3].radiance[0]);
             sum += radiance * cos(theta) * sin(theta) * LAB_PI / 2 / STEPS * LAB_PI / STEPS;
@@ -254,7 +254,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
     (void)state;
     enum { SIDE = 32 };
     static const float eye[3] = {0.1f, 0.4f, 0.2f};
-    static vit_sky_texel sky[(SKY + 2) * (SKY + 2)];
+    static vit_sky_texel picture[(SKY + 2) * (SKY + 2)];
     double wanted[SIDE * SIDE];
     reference_lab l;
     room *r = room_empty(0.6f);
@@ -268,7 +268,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
             const int ix = !inside && x >= 0 && x < SKY ? sx : x < 0 ? 0 : x >= SKY ? SKY - 1 : x,
                       iy = !inside && y >= 0 && y < SKY ? sy : y < 0 ? 0 : y >= SKY ? SKY - 1 : y;
             sky_direction(2 * (ix + 0.5) / SKY - 1, 2 * (iy + 0.5) / SKY - 1, d);
-            vit_sky_texel *t = sky + (y + 1) * (SKY + 2) + x + 1;
+            vit_sky_texel *t = picture + (y + 1) * (SKY + 2) + x + 1;
             for (int k = 0; k < 3; k++)
                 t->radiance[k] = (float)(1 + 0.5 * d[1] + 0.3 * d[0]) * (float)(k + 1);
             if (iy == 26 && (ix == 14 || ix == 15))
@@ -278,9 +278,9 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
     see_floor(&l, eye);
     l.meta.effects = VIT_BIT(SKY_LIGHT) | VIT_BIT(SKY_IMAGE);
     l.meta.sky_size = SKY;
-    l.sections.data[VIT_SECTION_SKYT] = sky;
+    l.sections.data[VIT_SECTION_SKYT] = picture;
     l.in.max_samples = 2048;
-    const double irradiance = sky_irradiance(sky);
+    const double irradiance = sky_irradiance(picture);
     for (uint32_t i = 0; i < SIDE * SIDE; i++)
         wanted[i] = (double)0.6f / LAB_PI * irradiance;
     expect_pixels("floor under a picture of a sky with a sun", &l, 1, wanted);
