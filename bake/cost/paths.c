@@ -4,8 +4,9 @@
  *
  * Small lights (points, spots, directions) are found by shadow rays alone, area lights and the sky both by these and by chance
  * (wide_lights.h), through mirrors and glass by chance alone. Radiance inside glass is basic radiance (divided by the squared index),
- * which no refraction changes. */
+ * which no refraction changes. Small lights' light by mirrors and glass are photons (caustics.h). */
 #include "paths.h"
+#include "caustics.h"
 #include "lights.h"
 #include "sequence.h"
 
@@ -146,8 +147,7 @@ static shine_place place_of(const photon_surface *s, vec3 normal, vec3 d) {
     return r;
 }
 
-/* Goes on from a mirror or glass that the ray o, d has met after t metres. random, 0..1: less than Fresnel's part is mirrored. */
-static void pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
+void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
     const vit_material *m = s->material;
     const bool inside = m->kind == VIT_GLASS && s->back;
     const shine_paths way = shine_at_glass(*d, s->normal, s->face, s->back, m->kind == VIT_THIN_GLASS, m->ior);
@@ -208,7 +208,7 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
             sequence_point(pcg(seed ^ pcg(OF_CHAIN + event)), *path, &u, &unused);
         for (int k = 0; k < 3; k++)
             out->direct[k] += out->weight[k] * (double)m->emission[k] * (double)c->exposure;
-        pass_on(p, &s, t, (double)u, &o, &d, out->weight);
+        paths_pass_on(p, &s, t, (double)u, &o, &d, out->weight);
     }
 }
 
@@ -253,12 +253,27 @@ static bool survives(double weight[3], uint32_t random) {
  * surfaces weight * irradiance is their contribution: cosine sampling cancels cosines and 1 / Pi. */
 typedef struct walk {
     const path_scene *p;
+    const caustics *caustics; /* may be NULL */
     uint64_t *rays;
     path_sums *out;
     shine_place at;    /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
     double weight[3];
     double density;    /* of the direction taken from there; 0: a mirror or glass came after, beyond which lights are found by chance */
 } walk;
+
+/* Light that the path's place gets through mirrors and glass. */
+static void add_passed(const walk *w, const double limited[3], const double all[3]) {
+    for (int k = 0; k < 3; k++) {
+        w->out->limited[k] += w->weight[k] * limited[k];
+        w->out->unlimited[k] += w->weight[k] * all[k];
+    }
+}
+
+static void add_caustics(const walk *w, uint32_t hit) {
+    double limited[3], all[3];
+    caustics_gather(w->caustics, &w->at, (int)w->p->bounces - 1 - (int)hit, limited, all);
+    add_passed(w, limited, all);
+}
 
 /* Light that took `between` reflections after the one that lit the path's place. */
 static void add(const walk *w, uint32_t between, const double light[3]) {
@@ -347,22 +362,23 @@ static bool meet(walk *w, const photon_surface *s, vec3 d, uint32_t hit) {
     look_at_lights(w->p, &w->at, s->face, true, (int)w->p->bounces - 1 - (int)hit, &e, w->rays);
     add(w, hit, e.open);
     if (w->p->panes)
-        for (int k = 0; k < 3; k++) {
-            w->out->limited[k] += w->weight[k] * e.limited[k];
-            w->out->unlimited[k] += w->weight[k] * e.unlimited[k];
-        }
+        add_passed(w, e.limited, e.unlimited);
+    if (w->caustics)
+        add_caustics(w, hit);
     return true;
 }
 
 /* Path i of the sequence. */
-static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited, path_sums *out,
-                  uint64_t *rays) {
-    walk w = {.p = p, .rays = rays, .out = out, .at = v->place, .weight = {1, 1, 1}};
+static void trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited,
+                  path_sums *out, uint64_t *rays) {
+    walk w = {.p = p, .caustics = c, .rays = rays, .out = out, .at = v->place, .weight = {1, 1, 1}};
     const uint32_t most = p->by_chance ? p->bounces : p->bounces - 1; /* hits of limited paths: chance needs one more */
     bool passing = false;                                             /* on from a mirror or glass, along d */
     vec3 o = v->place.position, d = {0, 0, 0};
     if (p->by_chance)
         look_at_wide(&w, 0, pcg(seed ^ pcg(0)), i);
+    if (c)
+        add_caustics(&w, 0);
     for (uint32_t hit = 1; hit <= most || !only_limited; hit++) {
         float a, b, t = 0.0f;
         const uint32_t dimension = pcg(seed ^ pcg(hit));
@@ -392,7 +408,7 @@ static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint
         passing = s.material->kind != VIT_MATTE;
         if (passing) {
             sequence_point(pcg(dimension ^ OF_GLASS), i, &a, &b);
-            pass_on(p, &s, t, (double)a, &o, &d, w.weight);
+            paths_pass_on(p, &s, t, (double)a, &o, &d, w.weight);
             w.density = 0;
             continue;
         }
@@ -425,7 +441,7 @@ static void add_view(const view_sample *v, double count, bool random, path_sums 
     }
 }
 
-void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
+void paths_trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
                  path_sums *out, uint64_t *rays) {
     path_sums sums = {.limited = {0}};
     *out = sums;
@@ -434,14 +450,14 @@ void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint3
         look_at_random(p, v, seed, i, &own, rays);
         sums = (path_sums){.limited = {0}};
         if (own.hit)
-            trace(p, &own, seed, i, only_limited, &sums, rays);
+            trace(p, c, &own, seed, i, only_limited, &sums, rays);
         reflect(p, &own, &sums, out);
         add_view(&own, 1, true, out);
     }
     if (v->random || !v->hit)
         return;
     for (uint32_t i = first; i < first + count; i++)
-        trace(p, v, seed, i, only_limited, &sums, rays);
+        trace(p, c, v, seed, i, only_limited, &sums, rays);
     reflect(p, v, &sums, out);
     add_view(v, count, false, out);
 }
