@@ -29,9 +29,11 @@ static vit_status out_of_memory(vit_text *why) {
     return VIT_FAILED;
 }
 
-static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, vit_text *why) {
+static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool reach, vit_text *why) {
     vit_requirements need;
     vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
+    info.record_reach = reach;
+    info.count_work = reach && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
     memset(r, 0, sizeof *r);
     vit_status status = pack_assemble(sections, &r->pack, &info.pack_size, why);
     if (status != VIT_OK)
@@ -87,7 +89,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     if (in->progress)
         in->progress(in->user, "depth slices", 0);
     if (status == VIT_OK)
-        status = run_begin(&r, in, &sections, VIT_FORMAT_XRGB8888, why);
+        status = run_begin(&r, in, &sections, VIT_FORMAT_XRGB8888, false, why);
     free(dark);
     if (status != VIT_OK)
         return status;
@@ -119,13 +121,27 @@ static uint32_t doubled(uint32_t want, uint32_t most) {
     return want > most / 2 ? most : want * 2;
 }
 
+/* What the frame's rays reached; words: room for the runtime's. */
+static vit_status note_reached(bounds_input *in, const run *r, const vit_statistics *t, uint32_t index, uint32_t *words, vit_text *why) {
+    uint64_t tests = 0;
+    for (uint32_t p = 0; p < t->pass_count && t->work_count > 0; p++)
+        tests += t->pass_work[p][VIT_WORK_cutout_tests];
+    const vit_status status = vit_reached(r->v, words, in->scene->materials + VIT_REACHED_MORE, why);
+    if (status == VIT_OK)
+        effects_note(in->reached, in->scene->materials, words, tests, index);
+    return status;
+}
+
 /* One run over the path from frame *next; stops early, with the bounds raised, at the first frame that overflows. */
 static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nodes, uint32_t *list, vit_text *why) {
     vit_scene *s = in->scene;
-    run r;
+    run r = {0};
     if (in->progress)
         in->progress(in->user, "frames", (double)*next / s->frames);
-    vit_status status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, why);
+    uint32_t *words = in->reached ? calloc(s->materials + VIT_REACHED_MORE, sizeof *words) : NULL;
+    vit_status status = in->reached && !words ? out_of_memory(why) : VIT_OK;
+    if (status == VIT_OK)
+        status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, words != NULL, why);
     while (status == VIT_OK && *next < s->frames) {
         vit_statistics t;
         status = frame(in, &r, *next, "frames", why);
@@ -146,6 +162,8 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
             s->max_list = t.list > s->max_list ? doubled(t.list, MOST_LIST) : s->max_list;
             break;
         }
+        if (words && (status = note_reached(in, &r, &t, *next, words, why)) != VIT_OK)
+            break;
         *nodes = t.nodes > *nodes ? t.nodes : *nodes;
         *list = t.list > *list ? t.list : *list;
         vit_gold *g = &in->gold[*next];
@@ -159,12 +177,13 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         ++*next;
     }
     run_end(&r);
+    free(words);
     return status;
 }
 
 static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why) {
     run r;
-    vit_status status = run_begin(&r, in, in->sections, format, why);
+    vit_status status = run_begin(&r, in, in->sections, format, false, why);
     for (uint32_t i = 0; i < in->scene->frames && status == VIT_OK; i++) {
         status = frame(in, &r, i, format == VIT_FORMAT_RGB565 ? "RGB565 hashes" : "RGBA32F hashes", why);
         split(format == VIT_FORMAT_RGB565 ? in->gold[i].rgb565 : in->gold[i].rgba32f, vit_hash_frame(r.frame, format, r.stride * in->scene->height));
@@ -186,7 +205,7 @@ vit_status bounds_count_photons(bounds_input *in, double *stored, vit_text *why)
         in->progress(in->user, "photon radius", 0);
     vit_status status = vit_pack_derive(s, why);
     if (status == VIT_OK)
-        status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, why);
+        status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, false, why);
     if (status != VIT_OK)
         return status;
     for (uint32_t i = 0; i < probes && status == VIT_OK; i++) {

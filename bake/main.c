@@ -49,11 +49,6 @@ static vit_status make_pack(bake *b, vit_text *why) {
     return pipeline_pack(p, &choice, &b->packed, why);
 }
 
-static void print_line(void *user, const char *line) {
-    (void)user;
-    printf("  %s\n", line);
-}
-
 static vit_status explain(const bake *b, vit_text *why) {
     const pipeline *p = &b->pipeline;
     const vit_scene *s = &b->packed.plan.scene;
@@ -63,7 +58,9 @@ static vit_status explain(const bake *b, vit_text *why) {
     if (status != VIT_OK)
         return status;
     printf("effects\n");
-    plan_explain(&b->packed.plan, print_line, NULL);
+    for (int bit = 0; bit < 64; bit++)
+        if (effects_name(bit))
+            printf("  %-15s %s\n", effects_name(bit), b->packed.plan.effects.reason[bit]);
     printf("\nscene\n  %u x %u, %u frames at %g a second\n", s->width, s->height, s->frames, (double)s->fps);
     printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n", s->triangles,
            (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite, (unsigned long long)b->packed.model->not_triangles, s->nodes,

@@ -252,8 +252,14 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
         status = bake_zones(p, c, out, why);
     point_sections(p, out);
     cut_frames(c, out);
+    in.reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *in.reached);
+    if (status == VIT_OK && !in.reached)
+        status = out_of_memory(why);
     if (status == VIT_OK)
         status = bounds_measure(&in, why);
+    if (status == VIT_OK)
+        effects_settle(&out->plan.scene, out->model, out->plan.materials, in.reached, &out->plan.effects);
+    free(in.reached);
     if (status == VIT_OK)
         status = pack_assemble(&out->sections, &out->bytes, &out->size, why);
     return status;

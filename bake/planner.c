@@ -223,6 +223,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
             c->effects |= VIT_BIT(SMOOTH);
     if (r->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
+    effects_force(s, c, &out->effects);
     if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;
@@ -260,14 +261,4 @@ void plan_free(plan *p) {
     free(p->materials);
     free(p->baked_paths);
     memset(p, 0, sizeof *p);
-}
-
-void plan_explain(const plan *p, plan_line_fn *line, void *user) {
-    char text[256];
-#define X(bit, name, macro, why)                                                                                               \
-    snprintf(text, sizeof text, "%-15s %s %s", name, p->scene.effects & VIT_BIT(macro) ? "called for since" : "not called for, would be if", \
-             why);                                                                                                             \
-    line(user, text);
-    VIT_EFFECTS(X)
-#undef X
 }

@@ -4,6 +4,7 @@
 
 #include "atlas.h"
 #include "bvh.h"
+#include "effects.h"
 #include "reach.h"
 #include "tracks.h"
 
@@ -13,6 +14,7 @@ typedef struct plan {
     uint32_t *baked_paths;     /* a light: paths to bake (still lights), 0 for the others */
     double lit_area;           /* m2 of sides that light can reach */
     double free_path;          /* reach.free_path, m */
+    effects_decided effects;
 } plan;
 
 /* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights in proportion to their mean
@@ -29,9 +31,5 @@ void plan_set_radius(plan *p, double radius, vit_photon *baked);
 /* A cluster's buckets hold photons of all zones that any of its samples accepts, a sample's area is that of its own zones: divided by
  * one another they are no irradiance. So quality.effective_area does nothing with both. */
 bool plan_leaves_area_out(const scene_quality *q);
-
-/* One line an effect: "called for" or not, and why. */
-typedef void plan_line_fn(void *user, const char *line);
-void plan_explain(const plan *p, plan_line_fn *line, void *user);
 
 #endif

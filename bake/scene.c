@@ -22,6 +22,7 @@ static const field top_fields[] = {
     {"lights", FIELD_OTHER, 0, NULL},
     {"materials", FIELD_OTHER, 0, NULL},
     {"quality", FIELD_OTHER, 0, NULL},
+    {"effects", FIELD_OTHER, 0, NULL},
 };
 
 static const field output_fields[] = {
@@ -250,7 +251,7 @@ static bool read_top(reader *r, const config_setting_t *root) {
     uint32_t seen;
     return fields_read(&r->at, root, top_fields, FIELD_COUNT(top_fields), r->s, &seen) && read_output(r, root) &&
            read_sky(r, root) && reader_meshes(r, root) && reader_camera(r, root) && reader_lights(r, root) &&
-           reader_materials(r, root) && read_quality(r, root);
+           reader_materials(r, root) && reader_effects(r, root) && read_quality(r, root);
 }
 
 static void set_defaults(scene *s) {

@@ -102,6 +102,9 @@ typedef struct scene_quality {
     bool caustics;             /* photon paths go on from mirrors and glass */
 } scene_quality;
 
+/* What `effects` of a scene file says. */
+enum { EFFECTS_AUTO, EFFECTS_LISTED, EFFECTS_ALL };
+
 typedef struct scene {
     char path[SCENE_PATH];     /* the scene file; or the mesh, if there was no scene file */
     char name[SCENE_NAME];
@@ -122,6 +125,8 @@ typedef struct scene {
     scene_material *materials;
     int material_count;
     scene_quality quality;
+    int effects_choice;        /* EFFECTS_* */
+    uint64_t effects;          /* EFFECTS_LISTED: VIT_BIT() of those named */
     bool automatic;            /* no scene file: camera and light are made from the model's box (tracks.c) */
 } scene;
 

@@ -30,5 +30,6 @@ bool reader_meshes(reader *r, const config_setting_t *root);
 bool reader_materials(reader *r, const config_setting_t *root);
 bool reader_camera(reader *r, const config_setting_t *root);
 bool reader_lights(reader *r, const config_setting_t *root);
+bool reader_effects(reader *r, const config_setting_t *root);
 
 #endif

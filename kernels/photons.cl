@@ -164,7 +164,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         if (hit_number + 1 == scene->bounces || !l_any(alive))
             continue; /* slots of dead paths are still written, as empty */
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
-            power = lv3_scale(power, light_falloff(light, t * t) * (t * t));
+            power = lv3_scale(power, light_left(light, t * t));
         lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
         lf u, v;
         photon_numbers(path, hit_number, &u, &v);

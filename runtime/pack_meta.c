@@ -86,7 +86,7 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
 #define X(bit, name, macro, reason) | VIT_BIT(macro)
     const vit_u64 known = 0u VIT_EFFECTS(X);
 #undef X
-    const vit_u64 e = s->effects, textured = VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT);
+    const vit_u64 e = s->effects;
     if (e & ~known)
         return pack_refuse(why, "section META: unknown effects 0x%llx", (unsigned long long)(e & ~known));
     vit_status status = check_needs(s, why);
@@ -107,16 +107,14 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
         return pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT", s->area_samples, s->sky_samples);
-    if ((s->sky_size > 0) != ((e & VIT_BIT(SKY_IMAGE)) != 0))
-        return pack_refuse(why, "section META: a sky of %u texels a side contradicts the effect SKY_IMAGE", s->sky_size);
+    if (s->sky_size == 0 && (e & VIT_BIT(SKY_IMAGE)))
+        return pack_refuse(why, "section META: the effect SKY_IMAGE without a sky");
     if ((s->chain > 0) != ((e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0))
         return pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
     if ((s->copies > 1) != ((e & VIT_BIT(ANTIALIAS)) != 0))
         return pack_refuse(why, "section META: %u copies contradict the effect ANTIALIAS", s->copies);
     if (s->baked > 0 && !photons)
         return pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
-    if ((e & textured) && s->textures == 0)
-        return pack_refuse(why, "section META: effects TEXTURES or CUTOUT without a texture");
     return VIT_OK;
 }
 

@@ -126,7 +126,7 @@ static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *o
 
 /* Did the program that ran last say this? */
 static inline bool scene_lab_said(scene_lab *l, const char *text) {
-    char said[4096];
+    char said[16384];
     FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
     assert_non_null(f);
     said[fread(said, 1, sizeof said - 1, f)] = '\0';

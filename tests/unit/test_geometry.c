@@ -79,6 +79,24 @@ static geometry pack(const fixture *f) {
     return g;
 }
 
+static void normals_of_the_triangle_itself_are_not_interpolated(void **state) {
+    (void)state;
+    fixture f = make(2);
+    geometry g = pack(&f);
+    const vit_triangle *t = &g.triangles[0]; /* triangle 1 of the mesh */
+    const float length = sqrtf(t->nx * t->nx + t->ny * t->ny + t->nz * t->nz);
+    for (int c = 3; c < 6; c++) { /* one of them turned round */
+        const float sign = c == 4 ? -1.0f : 1.0f, n[3] = {sign * t->nx / length, sign * t->ny / length, sign * t->nz / length};
+        memcpy(f.m.normal + (size_t)3 * (size_t)c, n, sizeof n);
+    }
+    geometry_free(&g);
+    g = pack(&f);
+    assert_int_equal(g.attributes[0].material, 1);
+    assert_int_equal(g.attributes[1].material, VIT_TRIANGLE_SMOOTH);
+    geometry_free(&g);
+    drop(&f);
+}
+
 static void records_follow_the_leaf_order_with_exact_vertices(void **state) {
     (void)state;
     fixture f = make(5);
@@ -88,7 +106,7 @@ static void records_follow_the_leaf_order_with_exact_vertices(void **state) {
         assert_memory_equal(g.triangles[i].v0, f.m.position + 9 * t, 12);
         assert_memory_equal(g.triangles[i].v1, f.m.position + 9 * t + 3, 12);
         assert_memory_equal(g.triangles[i].v2, f.m.position + 9 * t + 6, 12);
-        assert_int_equal(g.attributes[i].material, t);
+        assert_int_equal(g.attributes[i].material, t | VIT_TRIANGLE_SMOOTH); /* its normals are z, and not its own */
         assert_memory_equal(g.attributes[i].uv, f.m.uv + 6 * t, 24);
         assert_int_equal(g.attributes[i].pad[0] | g.attributes[i].pad[1], 0);
     }
@@ -180,6 +198,7 @@ static void rays_start_well_clear_of_rounding_and_scale_with_the_scene(void **st
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(normals_of_the_triangle_itself_are_not_interpolated),
         cmocka_unit_test(records_follow_the_leaf_order_with_exact_vertices),
         cmocka_unit_test(the_normal_is_exact_where_products_cancel),
         cmocka_unit_test(normals_are_right_within_the_stated_angle),

@@ -79,7 +79,7 @@
     X(META, area_points_without_the_effect, "1 and 1 points", EFFECTS(0, BIT(AREA_LIGHTS)))                                    \
     X(META, no_sky_points_with_the_effect, "1 and 0 points", im->scene->sky_samples = 0)                                       \
     X(META, sky_too_large, "sky_size", im->scene->sky_size = 2049)                                                             \
-    X(META, sky_without_its_effect, "2 texels a side contradicts", EFFECTS(0, BIT(SKY_IMAGE)))                                 \
+    X(META, no_sky_with_the_effect, "SKY_IMAGE without a sky", im->scene->sky_size = 0)                                        \
     X(META, caustics_without_photons, "without", EFFECTS(0, BIT(PHOTONS) | BIT(TRACED)))                                       \
     X(META, directional_without_lights, "DIRECTIONAL without LIGHTS", EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))\
     X(META, reserved_words_in_use, "padding", im->scene->pad[4] = 1)                                                           \

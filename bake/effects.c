@@ -1,0 +1,246 @@
+#include "effects.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define TOLD 3 /* materials that a reason names */
+
+static const struct {
+    const char *name, *when;
+} table[64] = {
+#define X(bit, name, macro, why) [bit] = {name, why},
+    VIT_EFFECTS(X)
+#undef X
+};
+
+const char *effects_name(int bit) {
+    return table[bit].name;
+}
+
+uint64_t effects_named(const char *name) {
+    for (int i = 0; i < 64; i++)
+        if (table[i].name && strcmp(table[i].name, name) == 0)
+            return (uint64_t)1 << i;
+    return 0;
+}
+
+void effects_note(effects_reached *reached, uint32_t materials, const uint32_t *words, uint64_t cutout_tests, uint32_t frame) {
+    const uint32_t count = EFFECTS_RECORDS(materials);
+    for (uint32_t i = 0; i < count; i++) {
+        effects_reached *r = &reached[i];
+        const uint32_t how = i + 1 < count ? words[i] : cutout_tests > 0 ? VIT_REACHED_VIEW : 0;
+        const bool seen = how & VIT_REACHED_VIEW, anew = seen && !(r->how & VIT_REACHED_VIEW);
+        if (how == 0 || (!seen && (r->how & VIT_REACHED_VIEW)))
+            continue;
+        if (r->frames == 0 || anew) {
+            r->first = frame;
+            r->frames = 0;
+        }
+        r->last = frame;
+        r->frames++;
+        r->how |= how;
+    }
+    for (uint32_t i = 0; i + 1 < count; i++)
+        reached[i].how |= words[i];
+}
+
+void effects_drop(vit_scene *c, uint64_t effects) {
+    uint64_t all = effects;
+    for (int i = 0; i < 64; i++)
+        if (effects >> i & 1)
+            all |= vit_effects_upon((uint64_t)1 << i);
+    c->effects &= ~all;
+    if (!(c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))))
+        c->chain = 0;
+    if (!(c->effects & VIT_BIT(ANTIALIAS))) {
+        c->copies = 1;
+        c->contrast = 0;
+        memset(c->offset, 0, sizeof c->offset);
+    }
+    if (!(c->effects & VIT_BIT(AREA_LIGHTS)))
+        c->area_samples = 0;
+    if (!(c->effects & VIT_BIT(SKY_LIGHT)))
+        c->sky_samples = 0;
+}
+
+void effects_force(const scene *s, vit_scene *c, effects_decided *out) {
+    const uint64_t planned = c->effects;
+    /* What may stand idle in a program: there is no data without which it could not be. */
+    const uint64_t idle = VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |
+                          VIT_BIT(GLASS) | VIT_BIT(AMBIENT) | (planned & VIT_BIT(PHOTONS) ? VIT_BIT(CAUSTICS) : 0);
+    if (s->effects_choice == EFFECTS_LISTED)
+        effects_drop(c, EFFECTS_NAMED & ~s->effects);
+    if (s->effects_choice != EFFECTS_AUTO) {
+        c->effects |= idle & (s->effects_choice == EFFECTS_ALL ? idle : s->effects);
+        if ((c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) && c->chain == 0)
+            c->chain = (uint32_t)s->quality.specular_depth;
+    }
+    out->forced_on = s->effects_choice == EFFECTS_AUTO ? 0 : c->effects & EFFECTS_NAMED;
+    out->forced_off = planned & ~c->effects;
+}
+
+static bool is_positive(const float v[3]) {
+    return v[0] > 0.0f || v[1] > 0.0f || v[2] > 0.0f;
+}
+
+/* Does the material call for the effect? */
+static bool calls(uint64_t effect, const vit_material *m) {
+    switch (effect) {
+    case VIT_BIT(TEXTURES):
+        return m->texture != VIT_NONE;
+    case VIT_BIT(CUTOUT):
+        return m->cutout;
+    case VIT_BIT(EMISSION):
+        return is_positive(m->emission);
+    case VIT_BIT(GLOSS):
+        return m->kind == VIT_MATTE && is_positive(m->specular);
+    case VIT_BIT(MIRROR):
+        return m->kind == VIT_MIRROR;
+    case VIT_BIT(GLASS):
+        return m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS;
+    case VIT_BIT(CAUSTICS):
+        return m->kind != VIT_MATTE;
+    case VIT_BIT(AREA_LIGHTS):
+        return m->lights != 0 && is_positive(m->emission);
+    default:
+        return false;
+    }
+}
+
+/* Rays that an effect is for. */
+static uint32_t ways(uint64_t effect) {
+    if (effect == VIT_BIT(EMISSION) || effect == VIT_BIT(SKY_IMAGE))
+        return VIT_REACHED_VIEW;
+    if (effect == VIT_BIT(CAUSTICS))
+        return VIT_REACHED_PHOTON;
+    return VIT_REACHED_VIEW | VIT_REACHED_PHOTON;
+}
+
+typedef struct sentence {
+    char *text;
+    size_t used;
+} sentence;
+
+static void say(sentence *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(sentence *s, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    const int n = vsnprintf(s->text + s->used, EFFECTS_REASON - s->used, format, list);
+    va_end(list);
+    s->used = n > 0 && s->used + (size_t)n < EFFECTS_REASON ? s->used + (size_t)n : EFFECTS_REASON - 1;
+}
+
+static void say_frames(sentence *s, const effects_reached *r, uint32_t by, uint32_t frames) {
+    if (!(by & r->how & VIT_REACHED_VIEW)) {
+        say(s, "met by photons");
+        return;
+    }
+    say(s, "visible in ");
+    if (r->frames == frames)
+        say(s, "all frames");
+    else if (r->first == r->last)
+        say(s, "frame %u", r->first);
+    else if (r->frames == r->last - r->first + 1)
+        say(s, "frames %u-%u", r->first, r->last);
+    else
+        say(s, "%u of the frames %u-%u", r->frames, r->first, r->last);
+}
+
+/* The materials that call for the effect, those that are reached or those that are not. Returns their number. */
+static int say_materials(sentence *s, uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached, bool which,
+                         uint32_t frames) {
+    int count = 0;
+    for (int i = 0; i < m->material_count; i++) {
+        const bool is_reached = reached[i].how & ways(effect);
+        if (m->materials[i].triangles == 0 || !calls(effect, &materials[i]) || is_reached != which)
+            continue;
+        if (count++ >= TOLD)
+            continue;
+        say(s, "%smaterial '%.60s' (%llu triangle%s)", count > 1 ? "; " : "", m->materials[i].name,
+            (unsigned long long)m->materials[i].triangles, m->materials[i].triangles == 1 ? "" : "s");
+        if (which) {
+            say(s, ", ");
+            say_frames(s, &reached[i], ways(effect), frames);
+        }
+    }
+    if (count > TOLD)
+        say(s, "; and %d more", count - TOLD);
+    return count;
+}
+
+/* What the effect acts on that is no material: its record, or NULL. */
+static const effects_reached *other(uint64_t effect, const effects_reached *reached, uint32_t materials) {
+    switch (effect) {
+    case VIT_BIT(SMOOTH):
+        return &reached[materials];
+    case VIT_BIT(SKY_IMAGE):
+        return &reached[materials + 1];
+    case VIT_BIT(CUTOUT):
+        return &reached[materials + 2];
+    default:
+        return NULL;
+    }
+}
+
+static const char *what_is_other(uint64_t effect) {
+    return effect == VIT_BIT(SMOOTH) ? "triangles with normals of their own" : effect == VIT_BIT(SKY_IMAGE) ? "the sky" : "cut-out triangles";
+}
+
+/* Is the effect one that only acts where rays reach? AREA_LIGHTS acts wherever its light falls. */
+static bool is_settled(uint64_t effect) {
+    return effect & (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |
+                     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE));
+}
+
+static bool is_reached(uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached) {
+    const effects_reached *o = other(effect, reached, (uint32_t)m->material_count);
+    if (o)
+        return o->how & ways(effect);
+    for (int i = 0; i < m->material_count; i++)
+        if (m->materials[i].triangles > 0 && calls(effect, &materials[i]) && (reached[i].how & ways(effect)))
+            return true;
+    return false;
+}
+
+static void explain(int bit, const vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
+                    effects_decided *out) {
+    const uint64_t effect = (uint64_t)1 << bit;
+    const bool forced_on = out->forced_on & effect, forced_off = out->forced_off & effect;
+    const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, m, materials, reached);
+    const effects_reached *o = other(effect, reached, (uint32_t)m->material_count);
+    sentence s = {.text = out->reason[bit]};
+    if (forced_off)
+        say(&s, "forced off: ");
+    else if (out->dropped & effect)
+        say(&s, "not called for: never reached on the path");
+    else if (!(c->effects & effect))
+        say(&s, "not called for: would be if ");
+    else
+        say(&s, forced_on ? "forced on: " : "called for: ");
+    if (out->dropped & effect) {
+        char names[EFFECTS_REASON] = "";
+        sentence of = {.text = names};
+        if (say_materials(&of, effect, m, materials, reached, false, c->frames) > 0)
+            say(&s, ": %s", names);
+    } else if (is_settled(effect) && acts && o) {
+        say(&s, "%s, ", what_is_other(effect));
+        say_frames(&s, o, ways(effect), c->frames);
+    } else if (!((effect == VIT_BIT(AREA_LIGHTS) || (is_settled(effect) && acts)) &&
+                 say_materials(&s, effect, m, materials, reached, true, c->frames) > 0))
+        say(&s, "%s", forced_on && is_settled(effect) ? "nothing on the path calls for it" : table[bit].when);
+}
+
+void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached, effects_decided *out) {
+    out->dropped = 0;
+    for (int bit = 0; bit < 64; bit++) {
+        const uint64_t effect = (uint64_t)1 << bit;
+        if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) && !is_reached(effect, m, materials, reached))
+            out->dropped |= effect;
+    }
+    const uint64_t before = c->effects;
+    effects_drop(c, out->dropped);
+    out->dropped = before & ~c->effects;
+    for (int bit = 0; bit < 64; bit++)
+        if (table[bit].name)
+            explain(bit, c, m, materials, reached, out);
+}
