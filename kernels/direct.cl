@@ -87,7 +87,26 @@ static inline void lit_store(global const vit_scene *scene, const lit_sample *s,
     global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,         \
         global const float *rays, global const uint *gloss, global float *direct
 
-#if VIT_WITH(LIGHTS)
+/* Way to a light of a place: unit direction, distance, irradiance a unit of its power. *to: the way, not a direction's. */
+static inline lv3 lit_way(global const vit_scene *scene, global const vit_light *light, const lit_sample *s, lv3 *to, lf *d, lf *e)
+{
+    if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) {
+        lv3 along = lv3_scale(lv3_load(light->direction), L_F(-1));
+        *d = L_F(3e38f);
+        *e = l_max(lv3_dot(s->n, along), L_F(0));
+        *to = along;
+        return along;
+    }
+    float least = scene->ray_offset * 0.0625f, least2 = least * least; /* of distances, relative to the scene's size */
+    *to = lv3_sub(lv3_load(light->position), s->p);
+    lf d2 = l_max(lv3_dot(*to, *to), L_F(least2));
+    *d = l_sqrt(d2);
+    lv3 l = lv3_scale(*to, l_div(1.0f, *d));
+    *e = l_max(lv3_dot(s->n, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+    return l;
+}
+
+#if VIT_WITH(LIGHTS) && VIT_BUNDLE == 1
 kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights, LIT_PARAMETERS WORK_PARAMETERS)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES;
@@ -97,23 +116,12 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
     if (!l_any(hit))
         return;
     lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
-    float least = scene->ray_offset * 0.0625f, least2 = least * least; /* of distances, relative to the scene's size */
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
-        lv3 l;
+        lv3 to;
         lf e, d;
-        if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) {
-            l = lv3_scale(lv3_load(light->direction), L_F(-1));
-            d = L_F(3e38f);
-            e = l_max(lv3_dot(s.n, l), L_F(0));
-        } else {
-            lv3 to = lv3_sub(lv3_load(light->position), s.p);
-            lf d2 = l_max(lv3_dot(to, to), L_F(least2));
-            d = l_sqrt(d2);
-            l = lv3_scale(to, l_div(1.0f, d));
-            e = l_max(lv3_dot(s.n, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
-        }
+        lv3 l = lit_way(scene, light, &s, &to, &d, &e);
         li lit = hit & L_GT(e, L_F(0));
         if (!l_any(lit))
             continue;
@@ -124,6 +132,65 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
         lit_add(&s, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
     }
     lit_store(scene, &s, first, albedo, gloss, direct);
+    WORK_END
+}
+#elif VIT_WITH(LIGHTS)
+/* The same for a bundle. */
+kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights, LIT_PARAMETERS WORK_PARAMETERS)
+{
+    uint bundle = (uint)get_global_id(0);
+    if (bundle * 64 >= scene->samples)
+        return;
+    lit_sample s[VIT_BUNDLE];
+    li lit[VIT_BUNDLE];
+    uint hits = 0; /* packets with hits */
+    for (uint i = 0; i < VIT_BUNDLE; i++) {
+        uint first = bundle_sample(scene, bundle, i);
+        li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+        if (!l_any(hit))
+            continue;
+        hits |= 1u << i;
+        s[i] = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    }
+    if (hits == 0)
+        return;
+    ray_packet ray[VIT_BUNDLE];
+    lf d[VIT_BUNDLE], e[VIT_BUNDLE], x[VIT_BUNDLE], y[VIT_BUNDLE], z[VIT_BUNDLE];
+    WORK_BEGIN
+    for (uint k = 0; k < scene->lights; k++) {
+        global const vit_light *light = lights + (size_t)frame * scene->lights + k;
+        uint cast = 0; /* packets with rays */
+        for (uint i = 0; i < VIT_BUNDLE; i++) {
+            if (!(hits >> i & 1u))
+                continue;
+            lv3 to, l = lit_way(scene, light, s + i, &to, d + i, e + i);
+            lit[i] = s[i].hit & L_GT(e[i], L_F(0));
+            if (!l_any(lit[i]))
+                continue;
+            cast |= 1u << i;
+            x[i] = to.x;
+            y[i] = to.y;
+            z[i] = to.z;
+            ray[i] = ray_make(s[i].p, l);
+            WORK_LANES(shadow_rays, lit[i]);
+        }
+        if (cast == 0)
+            continue;
+        if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) { /* its rays pass no one point */
+            for (uint i = 0; i < VIT_BUNDLE; i++)
+                if (cast >> i & 1u)
+                    lit[i] &= ~ray_occluded(RAY_SCENE, ray + i, lit[i], d[i]);
+        } else
+            bundle_shadows(RAY_SCENE, ray, cast, d, x, y, z, light->position, lit);
+        for (uint i = 0; i < VIT_BUNDLE; i++)
+            if (cast >> i & 1u) {
+                lit_add(s + i, ray[i].d, l_sel(lit[i], e[i], L_F(0)), lv3_load(light->intensity));
+                WORK_TRACED(ray[i]);
+            }
+    }
+    for (uint i = 0; i < VIT_BUNDLE; i++)
+        if (hits >> i & 1u)
+            lit_store(scene, s + i, bundle_sample(scene, bundle, i), albedo, gloss, direct);
     WORK_END
 }
 #endif

@@ -19,9 +19,8 @@ static inline li to_steps(lf x, float steps)
 /* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
 static inline void write_pixels(global const vit_scene *scene, li x, li y, li inside, lv3 c, global uchar *framebuffer)
 {
-    int px[VIT_LANES], py[VIT_LANES], in[VIT_LANES];
-    L_STORE(x, px);
-    L_STORE(y, py);
+    int at[VIT_LANES], in[VIT_LANES];
+    L_STORE(y * (int)scene->width + x, at);
     L_STORE(inside, in);
     if (VIT_FORMAT == FORMAT_RGBA32F) {
         float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
@@ -30,7 +29,7 @@ static inline void write_pixels(global const vit_scene *scene, li x, li y, li in
         L_STORE(c.z, b);
         for (int i = 0; i < VIT_LANES; i++)
             if (in[i])
-                vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)py[i] * scene->width + (size_t)px[i], (global float *)framebuffer);
+                vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)at[i], (global float *)framebuffer);
         return;
     }
     int v[VIT_LANES];
@@ -38,13 +37,19 @@ static inline void write_pixels(global const vit_scene *scene, li x, li y, li in
         L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
         for (int i = 0; i < VIT_LANES; i++)
             if (in[i])
-                ((global ushort *)framebuffer)[(size_t)py[i] * scene->width + (size_t)px[i]] = (ushort)v[i];
+                ((global ushort *)framebuffer)[at[i]] = (ushort)v[i];
         return;
     }
     L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
+    if (VIT_LANES >= 4 && !l_any(~inside)) { /* lanes are rows of four pixels */
+        for (int i = 0; i < VIT_LANES; i += 4)
+            for (int k = 0; k < 4; k++)
+                ((global uint *)framebuffer)[at[i] + k] = (uint)v[i + k];
+        return;
+    }
     for (int i = 0; i < VIT_LANES; i++)
         if (in[i])
-            ((global uint *)framebuffer)[(size_t)py[i] * scene->width + (size_t)px[i]] = (uint)v[i];
+            ((global uint *)framebuffer)[at[i]] = (uint)v[i];
 }
 
 /* Black, blue, green, yellow, red, white over 0..1. */

@@ -67,7 +67,7 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
-        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(0)), albedo + first);
+        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(VIT_SAMPLE_NOTHING)), albedo + first);
         if (VIT_EFFECT_GLOSS) {
             L_STORE(l_sel_u(hit, l_encode_albedo(s.shine.specular), L_U(0)), gloss + first);
             L_STORE(l_sel_u(hit, L_AS_UINT(s.shine.exponent), L_U(0)), gloss + n + first);
@@ -85,11 +85,11 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-    } else {
+    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING)))) { /* else all this stands there already */
         lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
         sample_store_position(scene, zero, zero, L_I(0), position, first);
         L_STORE(L_U(0), normal + first);
-        L_STORE(L_U(0), albedo + first);
+        L_STORE(L_U(VIT_SAMPLE_NOTHING), albedo + first);
         if (VIT_EFFECT_GLOSS) {
             L_STORE(L_U(0), gloss + first);
             L_STORE(L_U(0), gloss + n + first);
@@ -98,7 +98,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             L_STORE(L_U(0), accept + first);
         if (VIT_EFFECT_AREA)
             L_STORE(L_F(0), inverse_area + first);
-    }
+    } else if (!VIT_EFFECT_SKY_IMAGE)
+        return;
     /* Radiance that needs no light source: emission, ambient light and background. Direct light is added to it. */
     lv3_store_planes(light, direct, n, first);
     WORK_END

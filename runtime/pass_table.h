@@ -24,7 +24,7 @@
       B(scene), B(shown), B(edges))                                                                                           \
     X(activate, ON_FILM, EACH, PER_BLOCK, ONCE, W(active) | W(split),                                                         \
       B(scene), V(round), V(layers), B(edges), B(split), B(active))                                                           \
-    X(visibility, ALWAYS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance),                                          \
+    X(visibility, ALWAYS, EACH, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance),                                          \
       ARGS_RAYS, ARGS_ROUND, B(hit_triangle), B(hit_distance), ARGS_WORK)                                                     \
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split),                      \
       ARGS_RAYS, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                      \
@@ -32,7 +32,7 @@
       W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(gloss),                               \
       ARGS_SURFACE, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position),           \
       B(normal), B(albedo), B(direct), B(accept), B(inverse_area), B(gloss), B(reached), ARGS_WORK)                           \
-    X(direct_light, ON(LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct),                                                            \
+    X(direct_light, ON(LIGHTS), EACH, PER_BUNDLE, ONCE, W(direct),                                                            \
       ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle), B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct),     \
       ARGS_WORK)                                                                                                              \
     X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct),                                                         \

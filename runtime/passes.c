@@ -108,6 +108,10 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
     case PER_SAMPLE:
         n = s->samples / l->lanes;
         break;
+    case PER_BUNDLE:
+        n = s->samples / (l->lanes * VIT_BUNDLE_OF(l->lanes));
+        *local = l->lanes > 1 ? 1 : l->group; /* bundles are fat, and each work-item of a group has its own memory for one */
+        break;
     case PER_COARSE:
     case PER_REST:
         n = l->lanes > 1 ? s->samples / (s->tile * s->tile) : p->extent == PER_REST ? s->samples : (size_t)VIT_COARSE(s, l);

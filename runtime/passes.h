@@ -117,6 +117,7 @@ typedef enum vit_buffer {
 /* Work-items of a pass. */
 typedef enum vit_extent {
     PER_SAMPLE,                /* samples / lanes */
+    PER_BUNDLE,                /* samples / (lanes * VIT_BUNDLE_OF(lanes)) */
     PER_COARSE,                /* with one lane coarse samples, else tiles */
     PER_REST,                  /* with one lane samples, else tiles */
     PER_BLOCK,                 /* samples / 16 */

@@ -25,6 +25,7 @@ typedef struct knob {
         const char *label, *text; /* label: after the knob's name where it stands alone */
     } values[MOST_VALUES];        /* what matters most comes first */
     double numbers[MOST_VALUES];
+    uint64_t needs; /* effects, one of which the scene must have, else the knob changes nothing; 0: none */
 } knob;
 
 extern const knob knob_table[];

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define SPECULAR (VIT_BIT(MIRROR) | VIT_BIT(GLASS))
+
 const knob knob_table[] = {
     {"photons", "photon paths a frame: 1/4 to 4 times the scene's", true, KNOB_PHOTONS, .numbers = {0.25, 2.0, 0.5, 4.0}},
     {"radius", "photon radius, metres: 0.35 to 2 times the scene's, and \"auto\"", true, KNOB_RADIUS,
@@ -39,7 +41,41 @@ const knob knob_table[] = {
     {"texture_filter", "how textures are read", false, KNOB_TEXTS,
      .values = {{"nearest", "texture_filter = \"nearest\""},
                 {"trilinear", "texture_filter = \"trilinear\""},
-                {"bilinear", "texture_filter = \"bilinear\""}}},
+                {"bilinear", "texture_filter = \"bilinear\""}}, .needs = VIT_BIT(TEXTURES)},
+    {"antialias", "samples a pixel", true, KNOB_TEXTS,
+     .values = {{"1", "antialias = 1"},
+                {"4", "antialias = 4"},
+                {"2", "antialias = 2"},
+                {"8", "antialias = 8"},
+                {"16", "antialias = 16"}}, .needs = VIT_BIT(ANTIALIAS)},
+    {"antialias_contrast", "how much a pixel must differ from a neighbour to take all its samples; 0: all do", true, KNOB_TEXTS,
+     .values = {{"0", "antialias_contrast = 0.0"},
+                {"0.12", "antialias_contrast = 0.12"},
+                {"0.03", "antialias_contrast = 0.03"},
+                {"0.25", "antialias_contrast = 0.25"},
+                {"0.06", "antialias_contrast = 0.06"}}, .needs = VIT_BIT(ANTIALIAS)},
+    {"light_samples", "points on area lights that a view sample looks at", true, KNOB_TEXTS,
+     .values = {{"4", "light_samples = 4"},
+                {"64", "light_samples = 64"},
+                {"8", "light_samples = 8"},
+                {"32", "light_samples = 32"},
+                {"1", "light_samples = 1"},
+                {"16", "light_samples = 16"}}, .needs = VIT_BIT(AREA_LIGHTS)},
+    {"sky_samples", "directions to the sky that a view sample looks in", true, KNOB_TEXTS,
+     .values = {{"4", "sky_samples = 4"},
+                {"64", "sky_samples = 64"},
+                {"8", "sky_samples = 8"},
+                {"32", "sky_samples = 32"},
+                {"1", "sky_samples = 1"},
+                {"16", "sky_samples = 16"}}, .needs = VIT_BIT(SKY_LIGHT)},
+    {"specular_depth", "reflections and refractions of a view ray", false, KNOB_TEXTS,
+     .values = {{"2", "specular_depth = 2"},
+                {"4", "specular_depth = 4"},
+                {"16", "specular_depth = 16"},
+                {"1", "specular_depth = 1"},
+                {"8", "specular_depth = 8"}}, .needs = SPECULAR},
+    {"caustics", "whether photons go on from mirrors and glass", false, KNOB_TEXTS,
+     .values = {{"on", "caustics = true"}, {"off", "caustics = false"}}, .needs = SPECULAR},
     {"vertex_bits", "bits of each coordinate of a vertex", false, KNOB_TEXTS,
      .values = {{"16", "vertex_bits = 16"}, {"32", "vertex_bits = 32"}}},
     {"normal_bits", "bits of each of the two components of a vertex normal", false, KNOB_TEXTS,
@@ -82,7 +118,7 @@ bool knobs_in_quality(const knob_setting *s) {
 
 void knobs_help(void) {
     for (int k = 0; k < KNOBS; k++)
-        printf("  %-16s %s\n", knob_table[k].name, knob_table[k].what);
+        printf("  %-18s %s\n", knob_table[k].name, knob_table[k].what);
 }
 
 /* As scene_quality_text(), without what has no effect. */
@@ -90,6 +126,8 @@ static void text_of_effect(const scene_quality *q, char *text, size_t size) {
     scene_quality plain = *q;
     if (plan_leaves_area_out(q))
         plain.effective_area = false;
+    if (q->antialias == 1)
+        plain.antialias_contrast = 0;
     scene_quality_text(&plain, text, size);
 }
 
@@ -144,6 +182,8 @@ static bool number_value(const knobs_input *in, const knob *k, double number, ch
 static vit_status try_values(const knobs_input *in, const knob_setting *base, const knob *k, knob_values *t, vit_text *why) {
     vit_status status = VIT_OK;
     t->count = 0;
+    if (k->needs && !(k->needs & in->effects))
+        return VIT_OK;
     for (int i = 0; i < MOST_VALUES && k->numbers[i] > 0 && status == VIT_OK; i++) {
         char label[COST_NAME], text[COST_NAME];
         if (number_value(in, k, k->numbers[i], label, text, sizeof label))

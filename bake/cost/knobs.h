@@ -23,6 +23,7 @@ typedef struct knob_setting {
 typedef struct knobs_input {
     const scene_quality *base; /* the default: the scene's own */
     double radius;    /* metres that the default has in the end, if it is "auto": what radii are multiples of; 0: no photons */
+    uint64_t effects; /* that the default has: some knobs are for scenes with theirs alone */
     const char *only; /* names with commas between; NULL: all */
     uint32_t most;    /* settings, >= 1 */
 } knobs_input;

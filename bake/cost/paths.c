@@ -3,9 +3,10 @@
  * power, paths end.
  *
  * Small lights (points, spots, directions) are found by shadow rays alone, area lights and the sky both by these and by chance
- * (emitters.h), through mirrors and glass by chance alone. Radiance inside glass is basic radiance (divided by the squared index),
- * which no refraction changes. */
+ * (wide_lights.h), through mirrors and glass by chance alone. Radiance inside glass is basic radiance (divided by the squared index),
+ * which no refraction changes. Small lights' light by mirrors and glass are photons (caustics.h). */
 #include "paths.h"
+#include "caustics.h"
 #include "lights.h"
 #include "sequence.h"
 
@@ -15,13 +16,9 @@
 /* Dimensions beside a hit's own. */
 enum { OF_AREA = 0x243f6a88, OF_SKY = 0x13198a2e, OF_GLASS = 0x03707344, OF_PIXEL = 0x299f31d0, OF_CHAIN = 0x10000 };
 
-static const vit_material *material_of(const path_scene *p, uint32_t triangle) {
-    return p->scene.materials + (p->scene.attributes[triangle].material & VIT_MATERIAL_INDEX);
-}
-
 static bool has_panes(const path_scene *p) {
     for (uint32_t i = 0; i < p->meta->triangles; i++)
-        if (material_of(p, i)->kind == VIT_THIN_GLASS)
+        if (p->scene.materials[p->scene.attributes[i].material & VIT_MATERIAL_INDEX].kind == VIT_THIN_GLASS)
             return true;
     return false;
 }
@@ -60,18 +57,18 @@ bool paths_open(const reference_input *in, unsigned threads, path_scene *out) {
                                 .box_pad = meta->box_pad};
     out->filter = paths_filter(meta);
     out->panes = meta->lights > 0 && has_panes(out);
-    if (!emitters_open(meta, &out->scene, data[VIT_SECTION_SKYT], &out->emitters))
+    if (!wide_open(meta, &out->scene, data[VIT_SECTION_SKYT], &out->wide))
         return false;
-    out->by_chance = out->emitters.count > 0 || out->emitters.sky_lights;
+    out->by_chance = out->wide.count > 0 || out->wide.sky_lights;
     if (photon_rays_open(&out->scene, threads, &out->rays))
         return true;
-    emitters_close(&out->emitters);
+    wide_close(&out->wide);
     return false;
 }
 
 void paths_close(path_scene *p) {
     photon_rays_close(&p->rays);
-    emitters_close(&p->emitters);
+    wide_close(&p->wide);
 }
 
 /* Light straight from the small lights that a place reflects: Pi times radiance where it has a lobe, else irradiance. */
@@ -85,19 +82,17 @@ typedef struct small_lights {
 static int pass_panes(const path_scene *s, vec3 o, vec3 d, float distance, double part[3], uint64_t *rays) {
     part[0] = part[1] = part[2] = 1;
     for (int panes = 0; panes < (int)CHAIN; panes++) {
-        float t = 0.0f, b[3];
-        vec3 on;
+        float t = 0.0f;
         *rays += 1;
         const uint32_t triangle = photon_rays_nearest(&s->rays, o, d, &t);
         if (triangle == VIT_NONE || t > distance)
             return panes;
-        const vit_material *m = material_of(s, triangle);
-        if (m->kind != VIT_THIN_GLASS)
+        const photon_surface f = photon_surface_at(&s->scene, o, d, t, triangle);
+        if (f.material->kind != VIT_THIN_GLASS)
             return -1;
-        const photon_surface f = photon_surface_seen(&s->scene, o, d, t, triangle, 0.0f, b);
-        const double through = 1 - shine_at_glass(m, d, f.face, f.face, false, &on);
+        const shine_paths way = shine_at_glass(d, f.normal, f.face, false, true, f.material->ior);
         for (int k = 0; k < 3; k++)
-            part[k] *= through * (double)m->specular[k];
+            part[k] *= (1 - (double)way.mirror) * (double)f.material->specular[k];
         o = vec3_along(f.position, f.face, -2.0f * s->meta->ray_offset);
         distance -= t;
     }
@@ -139,52 +134,29 @@ static void look_at_lights(const path_scene *s, const shine_place *place, vec3 n
     }
 }
 
-/* l_decode_normal() of kernels/scene.clh. */
-static vec3 decode_normal(uint32_t code) {
-    const float x = (float)(int16_t)(code & 0xffffu) / 32767.0f, y = (float)(int16_t)(code >> 16) / 32767.0f;
-    const float ax = fabsf(x), ay = fabsf(y), z = 1.0f - ax - ay;
-    const float fx = x < 0.0f ? ay - 1.0f : 1.0f - ay, fy = y < 0.0f ? ax - 1.0f : 1.0f - ax;
-    return vec3_unit(z < 0.0f ? (vec3){fx, fy, z} : (vec3){x, y, z});
-}
-
-/* The interpolated normal on the side of `face`; surface_at() of kernels/surface.clh. */
-static vec3 shading_normal(const vit_attributes *a, const float b[3], vec3 face) {
-    const vec3 n0 = decode_normal(a->normal[0]), n1 = decode_normal(a->normal[1]), n2 = decode_normal(a->normal[2]);
-    const vec3 n = vec3_unit(vec3_along(vec3_along(vec3_scale(n0, b[0]), n1, b[1]), n2, b[2]));
-    const float side = vec3_dot(n, face);
-    if (side == 0.0f)
-        return face;
-    return vec3_scale(n, side < 0.0f ? -1.0f : 1.0f);
-}
-
-static shine_place place_of(const vit_material *m, const photon_surface *s, vec3 normal, vec3 d) {
-    shine_place r = {.position = s->position, .face = s->face, .normal = normal, .out = vec3_scale(d, -1.0f), .albedo = s->albedo};
-    r.specular = vec3_load(m->specular);
-    r.exponent = m->exponent;
+/* What light that has come to a matt or glossy surface along -d does there. */
+static shine_place place_of(const photon_surface *s, vec3 normal, vec3 d) {
+    shine_place r = {.position = s->position,
+                     .face = s->face,
+                     .normal = normal,
+                     .out = vec3_scale(d, -1.0f),
+                     .albedo = s->albedo,
+                     .specular = vec3_load(s->material->specular),
+                     .exponent = s->material->exponent};
     r.glossy = r.specular.x + r.specular.y + r.specular.z > 0.0f;
     return r;
 }
 
-/* Goes on from a mirror or glass that the ray o, d has met after t metres. random, 0..1: less than Fresnel's part is mirrored. */
-static void pass_on(const path_scene *p, const vit_material *m, uint32_t triangle, const photon_surface *s, const float b[3], float t,
-                    double random, vec3 *o, vec3 *d, double weight[3]) {
-    const vec3 n = shading_normal(p->scene.attributes + triangle, b, s->face), along = *d;
-    const vit_triangle *v = p->scene.triangles + triangle;
-    const bool back = vec3_dot((vec3){v->nx, v->ny, v->nz}, along) > 0.0f;
-    bool through = false;
-    *o = s->position;
-    *d = shine_mirrored(along, n, s->face);
-    if (m->kind != VIT_MIRROR) {
-        vec3 refracted;
-        through = random >= shine_at_glass(m, along, n, s->face, back, &refracted);
-        if (through) {
-            *o = vec3_along(s->position, s->face, -2.0f * p->meta->ray_offset);
-            *d = refracted;
-        }
-    }
-    const bool inside = m->kind == VIT_GLASS && back, tints = through || m->kind == VIT_MIRROR;
+void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
+    const vit_material *m = s->material;
+    const bool inside = m->kind == VIT_GLASS && s->back;
+    const shine_paths way = shine_at_glass(*d, s->normal, s->face, s->back, m->kind == VIT_THIN_GLASS, m->ior);
+    const bool through = m->kind != VIT_MIRROR && random >= (double)way.mirror;
+    *d = through ? way.refracted : way.mirrored;
+    *o = through ? vec3_along(s->position, s->face, -2.0f * p->meta->ray_offset) : s->position;
     for (int k = 0; k < 3; k++)
-        weight[k] *= (tints ? (double)m->specular[k] : 1) * (inside ? exp(-(double)m->absorption[k] * (double)t) : 1);
+        weight[k] *= (through || m->kind == VIT_MIRROR ? (double)m->specular[k] : 1) *
+                     (inside ? exp(-(double)m->absorption[k] * (double)t) : 1);
 }
 
 /* The view sample of the ray through the point (fx, fy) of the frame, pixels; path: of the sequence that `seed` names, or NULL: the
@@ -201,18 +173,18 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
         const uint32_t triangle = photon_rays_nearest(&p->rays, o, d, &t);
         if (triangle == VIT_NONE) {
             double radiance[3];
-            emitters_sky(&p->emitters, d, radiance);
+            wide_sky(&p->wide, d, radiance);
             for (int k = 0; k < 3; k++)
                 out->direct[k] += out->weight[k] * radiance[k] * (double)c->exposure;
             return;
         }
         way += t;
-        const vit_material *m = material_of(p, triangle);
         /* The footprint goes on widening behind a mirror as if it were flat. */
         const photon_surface s = photon_surface_seen(&p->scene, o, d, t, triangle, event ? cone * (way / t) : cone, b);
+        const vit_material *m = s.material;
         if (m->kind == VIT_MATTE) {
             out->hit = true;
-            out->place = place_of(m, &s, shading_normal(p->scene.attributes + triangle, b, s.face), d);
+            out->place = place_of(&s, s.normal, d);
             const shine_place *q = &out->place;
             const double albedo[3] = {(double)q->albedo.x, (double)q->albedo.y, (double)q->albedo.z};
             small_lights e;
@@ -236,7 +208,7 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
             sequence_point(pcg(seed ^ pcg(OF_CHAIN + event)), *path, &u, &unused);
         for (int k = 0; k < 3; k++)
             out->direct[k] += out->weight[k] * (double)m->emission[k] * (double)c->exposure;
-        pass_on(p, m, triangle, &s, b, t, (double)u, &o, &d, out->weight);
+        paths_pass_on(p, &s, t, (double)u, &o, &d, out->weight);
     }
 }
 
@@ -281,12 +253,27 @@ static bool survives(double weight[3], uint32_t random) {
  * surfaces weight * irradiance is their contribution: cosine sampling cancels cosines and 1 / Pi. */
 typedef struct walk {
     const path_scene *p;
+    const caustics *caustics; /* may be NULL */
     uint64_t *rays;
     path_sums *out;
     shine_place at;    /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
     double weight[3];
     double density;    /* of the direction taken from there; 0: a mirror or glass came after, beyond which lights are found by chance */
 } walk;
+
+/* Light that the path's place gets through mirrors and glass. */
+static void add_passed(const walk *w, const double limited[3], const double all[3]) {
+    for (int k = 0; k < 3; k++) {
+        w->out->limited[k] += w->weight[k] * limited[k];
+        w->out->unlimited[k] += w->weight[k] * all[k];
+    }
+}
+
+static void add_caustics(const walk *w, uint32_t hit) {
+    double limited[3], all[3];
+    caustics_gather(w->caustics, &w->at, (int)w->p->bounces - 1 - (int)hit, limited, all);
+    add_passed(w, limited, all);
+}
 
 /* Light that took `between` reflections after the one that lit the path's place. */
 static void add(const walk *w, uint32_t between, const double light[3]) {
@@ -308,7 +295,7 @@ static void add_found(const walk *w, uint32_t between, const double radiance[3],
     add(w, between, light);
 }
 
-static void add_point(const walk *w, uint32_t between, const emitters_point *e) {
+static void add_point(const walk *w, uint32_t between, const wide_point *e) {
     const double cosine = (double)vec3_dot(w->at.normal, e->to);
     double reflected[3] = {1, 1, 1};
     if (!(cosine > 0) || !(vec3_dot(w->at.face, e->to) > 0.0f))
@@ -325,18 +312,18 @@ static void add_point(const walk *w, uint32_t between, const emitters_point *e) 
 }
 
 /* Looks for a point of the area lights and of the sky. */
-static void look_at_emitters(const walk *w, uint32_t between, uint32_t dimension, uint32_t i) {
-    const emitters *e = &w->p->emitters;
-    emitters_point found;
+static void look_at_wide(const walk *w, uint32_t between, uint32_t dimension, uint32_t i) {
+    const wide_lights *e = &w->p->wide;
+    wide_point found;
     double u, v;
     if (e->count > 0) {
         sequence_fine(pcg(dimension ^ OF_AREA), i, &u, &v);
-        if (emitters_area_point(e, w->at.position, u, v, &found))
+        if (wide_area_point(e, w->at.position, u, v, &found))
             add_point(w, between, &found);
     }
     if (e->sky_rows) {
         sequence_fine(pcg(dimension ^ OF_SKY), i, &u, &v);
-        if (emitters_sky_point(e, u, v, &found))
+        if (wide_sky_point(e, u, v, &found))
             add_point(w, between, &found);
     }
 }
@@ -362,8 +349,8 @@ static bool scatter(walk *w, bool first, float u, float v, vec3 *d) {
 }
 
 /* The path meets a matt or glossy surface at its hit number `hit`. False: it ends, black. */
-static bool meet(walk *w, const vit_material *m, const photon_surface *s, vec3 d, uint32_t hit) {
-    w->at = place_of(m, s, s->face, d);
+static bool meet(walk *w, const photon_surface *s, vec3 d, uint32_t hit) {
+    w->at = place_of(s, s->face, d);
     if (!w->at.glossy) {
         w->weight[0] *= (double)s->albedo.x;
         w->weight[1] *= (double)s->albedo.y;
@@ -375,24 +362,25 @@ static bool meet(walk *w, const vit_material *m, const photon_surface *s, vec3 d
     look_at_lights(w->p, &w->at, s->face, true, (int)w->p->bounces - 1 - (int)hit, &e, w->rays);
     add(w, hit, e.open);
     if (w->p->panes)
-        for (int k = 0; k < 3; k++) {
-            w->out->limited[k] += w->weight[k] * e.limited[k];
-            w->out->unlimited[k] += w->weight[k] * e.unlimited[k];
-        }
+        add_passed(w, e.limited, e.unlimited);
+    if (w->caustics)
+        add_caustics(w, hit);
     return true;
 }
 
 /* Path i of the sequence. */
-static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited, path_sums *out,
-                  uint64_t *rays) {
-    walk w = {.p = p, .rays = rays, .out = out, .at = v->place, .weight = {1, 1, 1}};
+static void trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t i, bool only_limited,
+                  path_sums *out, uint64_t *rays) {
+    walk w = {.p = p, .caustics = c, .rays = rays, .out = out, .at = v->place, .weight = {1, 1, 1}};
     const uint32_t most = p->by_chance ? p->bounces : p->bounces - 1; /* hits of limited paths: chance needs one more */
     bool passing = false;                                             /* on from a mirror or glass, along d */
     vec3 o = v->place.position, d = {0, 0, 0};
     if (p->by_chance)
-        look_at_emitters(&w, 0, pcg(seed ^ pcg(0)), i);
+        look_at_wide(&w, 0, pcg(seed ^ pcg(0)), i);
+    if (c)
+        add_caustics(&w, 0);
     for (uint32_t hit = 1; hit <= most || !only_limited; hit++) {
-        float a, b, t = 0.0f, at[3];
+        float a, b, t = 0.0f;
         const uint32_t dimension = pcg(seed ^ pcg(hit));
         if (hit > most && !survives(w.weight, pcg(dimension ^ pcg(i + 0x5bd1e995u))))
             return;
@@ -405,29 +393,29 @@ static void trace(const path_scene *p, const view_sample *v, uint32_t seed, uint
         const uint32_t triangle = photon_rays_nearest(&p->rays, o, d, &t);
         if (triangle == VIT_NONE) {
             double radiance[3];
-            if (!p->emitters.sky_lights)
+            if (!p->wide.sky_lights)
                 return;
-            emitters_sky(&p->emitters, d, radiance);
-            add_found(&w, hit - 1, radiance, emitters_sky_density(&p->emitters, d));
+            wide_sky(&p->wide, d, radiance);
+            add_found(&w, hit - 1, radiance, wide_sky_density(&p->wide, d));
             return;
         }
-        const vit_material *m = material_of(p, triangle);
-        if (emitters_lights(&p->emitters, triangle)) {
-            const double radiance[3] = {(double)m->emission[0], (double)m->emission[1], (double)m->emission[2]};
-            add_found(&w, hit - 1, radiance, emitters_area_density(&p->emitters, triangle, d, t));
+        const photon_surface s = photon_surface_at(&p->scene, o, d, t, triangle);
+        if (wide_shines(&p->wide, triangle)) {
+            const double radiance[3] = {(double)s.material->emission[0], (double)s.material->emission[1],
+                                        (double)s.material->emission[2]};
+            add_found(&w, hit - 1, radiance, wide_area_density(&p->wide, triangle, d, t));
         }
-        const photon_surface s = photon_surface_seen(&p->scene, o, d, t, triangle, PHOTON_CONE, at);
-        passing = m->kind != VIT_MATTE;
+        passing = s.material->kind != VIT_MATTE;
         if (passing) {
             sequence_point(pcg(dimension ^ OF_GLASS), i, &a, &b);
-            pass_on(p, m, triangle, &s, at, t, (double)a, &o, &d, w.weight);
+            paths_pass_on(p, &s, t, (double)a, &o, &d, w.weight);
             w.density = 0;
             continue;
         }
-        if (!meet(&w, m, &s, d, hit))
+        if (!meet(&w, &s, d, hit))
             return;
         if (p->by_chance)
-            look_at_emitters(&w, hit, dimension, i);
+            look_at_wide(&w, hit, dimension, i);
         o = s.position;
     }
 }
@@ -453,7 +441,7 @@ static void add_view(const view_sample *v, double count, bool random, path_sums 
     }
 }
 
-void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
+void paths_trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
                  path_sums *out, uint64_t *rays) {
     path_sums sums = {.limited = {0}};
     *out = sums;
@@ -462,14 +450,14 @@ void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint3
         look_at_random(p, v, seed, i, &own, rays);
         sums = (path_sums){.limited = {0}};
         if (own.hit)
-            trace(p, &own, seed, i, only_limited, &sums, rays);
+            trace(p, c, &own, seed, i, only_limited, &sums, rays);
         reflect(p, &own, &sums, out);
         add_view(&own, 1, true, out);
     }
     if (v->random || !v->hit)
         return;
     for (uint32_t i = first; i < first + count; i++)
-        trace(p, v, seed, i, only_limited, &sums, rays);
+        trace(p, c, v, seed, i, only_limited, &sums, rays);
     reflect(p, v, &sums, out);
     add_view(v, count, false, out);
 }

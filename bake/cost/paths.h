@@ -2,7 +2,7 @@
 #ifndef VIT_COST_PATHS_H
 #define VIT_COST_PATHS_H
 
-#include "emitters.h"
+#include "wide_lights.h"
 #include "reference.h"
 #include "shine.h"
 
@@ -28,7 +28,7 @@ typedef struct path_scene {
     atlas atlas;
     photon_scene scene;
     photon_rays rays;
-    emitters emitters;
+    wide_lights wide;
 } path_scene;
 
 /* Uses the sections in place; `out` must stay where it is until paths_close(). False: Embree fails, or memory; nothing to close. */
@@ -48,6 +48,11 @@ typedef struct view_sample {
 
 void paths_view(const path_scene *p, uint32_t x, uint32_t y, view_sample *out, uint64_t *rays);
 
+/* Goes on from a mirror or glass that the ray o, d has met after t metres. random, 0..1: less than Fresnel's part is mirrored. */
+void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]);
+
+typedef struct caustics caustics; /* caustics.h */
+
 /* Sums of `count` paths' radiance times exposure. */
 typedef struct path_sums {
     double direct[3];    /* what view_sample.direct leaves out */
@@ -55,8 +60,8 @@ typedef struct path_sums {
     double unlimited[3]; /* of all, ended by Russian roulette; not computed if only_limited */
 } path_sums;
 
-/* Paths first .. first + count - 1 of the sequence that `seed` names (sequence.h). `rays` is added to. */
-void paths_trace(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
+/* Paths first .. first + count - 1 of the sequence that `seed` names (sequence.h), with the photons of `c`, NULL: none. `rays` is added to. */
+void paths_trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
                  path_sums *out, uint64_t *rays);
 
 #endif

@@ -1,6 +1,7 @@
 /* Rounds of some paths a pixel, until the standard error is small enough. A pixel's numbers come from its own paths in
  * a fixed order, so that neither threads nor ranks show. */
 #define _POSIX_C_SOURCE 200809L
+#include "caustics.h"
 #include "chunks.h"
 #include "paths.h"
 #include "spread.h"
@@ -19,6 +20,8 @@ typedef struct rendering {
     path_scene scene;
     reference_state state;
     view_sample *views;    /* of the rank's own pixels */
+    caustics caustics[REFERENCE_SEQUENCES]; /* of this round */
+    float first_radius;    /* of their photons; 0: there are none */
     pixel_sums *round;     /* sums of this round; zero for other ranks' pixels until they are gathered */
     uint32_t chunks, most; /* most: rounds */
     double began, spent;   /* clock; seconds of earlier runs */
@@ -63,8 +66,8 @@ static void path_chunk(void *user, uint32_t chunk, uint64_t *rays) {
             seed = pcg(~seed);
         memcpy(r->round[i].direct, r->views[i].direct, sizeof r->round[i].direct);
         for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
-            paths_trace(&r->scene, r->views + i, pcg(seed + q), r->state.rounds * PATHS, PATHS, false, r->round[i].paths + q,
-                        rays);
+            paths_trace(&r->scene, r->first_radius > 0.0f ? r->caustics + q : NULL, r->views + i, pcg(seed + q),
+                        r->state.rounds * PATHS, PATHS, false, r->round[i].paths + q, rays);
     }
 }
 
@@ -142,6 +145,25 @@ static vit_status save(rendering *r, bool always, double *saved, vit_text *why) 
     return VIT_OK;
 }
 
+static void free_caustics(rendering *r) {
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
+        caustics_free(r->caustics + q);
+}
+
+/* The round's photons, the same on all ranks, and a sequence's own each, so that variances hold theirs. */
+static vit_status trace_caustics(rendering *r, vit_text *why) {
+    const unsigned threads = chunks_threads(r->in->threads, spread_neighbours());
+    uint64_t rays = 0;
+    free_caustics(r);
+    for (uint32_t q = 0; q < REFERENCE_SEQUENCES && r->first_radius > 0.0f; q++) {
+        const uint32_t number = pcg(r->in->frame ^ pcg(r->state.rounds * REFERENCE_SEQUENCES + q));
+        if (!caustics_trace(&r->scene, r->first_radius, number, r->state.rounds, threads, r->caustics + q, &rays))
+            return fail(why, VIT_FAILED, "out of memory");
+    }
+    r->state.rays += rays;
+    return VIT_OK;
+}
+
 static bool finished(const rendering *r) {
     return r->state.rounds > 0 && (r->state.rounds >= r->most || r->error <= r->in->target);
 }
@@ -151,13 +173,16 @@ static vit_status trace_rounds(rendering *r, vit_text *why) {
     double saved = now();
     r->first_share = r->state.rounds / rounds_needed(r);
     while (!finished(r)) {
+        vit_status status = trace_caustics(r, why);
+        if (spread_any(status != VIT_OK))
+            return status != VIT_OK ? status : fail(why, VIT_FAILED, "another rank failed");
         if (!run_chunks(r, path_chunk, true)) {
-            const vit_status status = r->state.rounds > before ? save(r, true, &saved, why) : VIT_OK;
+            status = r->state.rounds > before ? save(r, true, &saved, why) : VIT_OK;
             return status == VIT_OK ? fail(why, VIT_FAILED, "interrupted") : status;
         }
         state_add(&r->state, r->round);
         r->error = state_error(&r->state);
-        const vit_status status = save(r, false, &saved, why);
+        status = save(r, false, &saved, why);
         if (status != VIT_OK)
             return status;
     }
@@ -219,7 +244,9 @@ static vit_status render(rendering *r, reference *out, vit_text *why) {
     if (!finished(r)) {
         if (!paths_open(r->in, threads, &r->scene))
             return fail(why, VIT_FAILED, "Embree fails");
-        status = trace(r, why);
+        r->first_radius = caustics_possible(&r->scene) ? caustics_first_radius(&r->scene, threads) : 0.0f;
+        status = r->first_radius < 0.0f ? fail(why, VIT_FAILED, "out of memory") : trace(r, why);
+        free_caustics(r);
         paths_close(&r->scene);
     }
     return status == VIT_OK ? state_finish(&r->state, out, why) : status;

@@ -1,4 +1,5 @@
 #define _POSIX_C_SOURCE 200809L
+#include "caustics.h"
 #include "chunks.h"
 #include "metrics.h"
 #include "paths.h"
@@ -12,6 +13,8 @@
 struct reference_timer {
     const reference_input *in;
     path_scene scene;
+    float radius; /* of photons by mirrors and glass; 0: there are none */
+    caustics caustics;
     uint32_t width, height, grid_width, grid_height, number; /* number: of the frame */
     unsigned threads;
     float *image;  /* on truth's grid */
@@ -41,7 +44,7 @@ static void pixel_chunk(void *user, uint32_t chunk, uint64_t *rays) {
         view_sample v;
         path_sums path;
         paths_view(&t->scene, x, y, &v, rays);
-        paths_trace(&t->scene, &v, pcg(x ^ pcg(y ^ pcg(t->number ^ SEED))), 0, 1, true, &path, rays);
+        paths_trace(&t->scene, t->radius > 0.0f ? &t->caustics : NULL, &v, pcg(x ^ pcg(y ^ pcg(t->number ^ SEED))), 0, 1, true, &path, rays);
         keep(t, x, y, &v, &path);
     }
 }
@@ -51,6 +54,9 @@ reference_timing reference_timer_frame(reference_timer *t) {
     const chunk_work w = {
         .run = pixel_chunk, .user = t, .step = 1, .count = (t->width * t->height + CHUNK - 1) / CHUNK, .threads = t->threads};
     const double began = now_ms();
+    caustics_free(&t->caustics);
+    if (!caustics_trace(&t->scene, t->radius, pcg(t->number ^ SEED), 0, t->threads, &t->caustics, &r.rays))
+        t->caustics = (caustics){.count = 0}; /* out of memory: a frame without them */
     (void)chunks_run(&w, &r.rays); /* cannot be cancelled */
     r.ms = now_ms() - began;
     t->number++;
@@ -82,6 +88,7 @@ vit_status reference_timer_open(const reference_input *in, const reference *trut
     }
     for (size_t i = 0; i < values; i++)
         t->total[i] = truth->direct[i] + truth->limited[i];
+    t->radius = caustics_possible(&t->scene) ? float_max(caustics_first_radius(&t->scene, t->threads), 0.0f) : 0.0f;
     *out = t;
     return VIT_OK;
 }
@@ -89,6 +96,7 @@ vit_status reference_timer_open(const reference_input *in, const reference *trut
 void reference_timer_close(reference_timer *t) {
     if (!t)
         return;
+    caustics_free(&t->caustics);
     paths_close(&t->scene);
     free(t->image);
     free(t->total);

@@ -1,38 +1,12 @@
-/* Mirrors, glass and the Phong lobe as kernels/shine.clh has them, and how paths choose directions from the lobe. */
+/* The Phong lobe of kernels/shine.clh, and how paths choose directions from it. */
 #ifndef VIT_COST_SHINE_H
 #define VIT_COST_SHINE_H
 
-#include "photon_math.h"
+#include "photon_shine.h"
 #include "vitrine_pack.h"
 #include <stdbool.h>
 
 #define SHINE_PI 3.14159265358979323846
-
-/* shine_mirrored() of kernels/shine.clh: d mirrored at n, both unit; the ray stays on the side of the unit face normal. */
-static inline vec3 shine_mirrored(vec3 d, vec3 n, vec3 face) {
-    const vec3 r = vec3_along(d, n, -2.0f * vec3_dot(d, n));
-    return vec3_unit(vec3_dot(r, face) > 0.0f ? r : vec3_along(d, face, -2.0f * vec3_dot(d, face)));
-}
-
-/* shine_at_glass() of kernels/shine.clh: the part of the light that is mirrored (Fresnel; 1: total internal reflection), and where
- * the rest goes. Unit direction d meets glass with the unit normals n and face on its side; back: from the inside. Thin panes: all
- * mirror images of both surfaces together, and straight on. */
-static inline double shine_at_glass(const vit_material *m, vec3 d, vec3 n, vec3 face, bool back, vec3 *refracted) {
-    const bool thin = m->kind == VIT_THIN_GLASS;
-    const double eta = back && !thin ? (double)m->ior : 1 / (double)m->ior;
-    const double ci = fmin(fmax(-(double)vec3_dot(d, n), 0), 1), st2 = eta * eta * (1 - ci * ci);
-    *refracted = d;
-    if (st2 > 1 || !(ci > 0))
-        return 1;
-    const double ct = sqrt(1 - st2), rs = (eta * ci - ct) / (eta * ci + ct), rp = (eta * ct - ci) / (eta * ct + ci);
-    const double f = fmin(0.5 * (rs * rs + rp * rp), 1);
-    if (thin)
-        return 2 * f / (1 + f);
-    const vec3 bent = vec3_unit(vec3_along(vec3_scale(d, (float)eta), n, (float)(eta * ci - ct)));
-    if (vec3_dot(bent, face) < 0.0f) /* else a bent shading normal would send it back to its own side */
-        *refracted = bent;
-    return f;
-}
 
 /* A matt or glossy place of a path. */
 typedef struct shine_place {

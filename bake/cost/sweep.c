@@ -103,8 +103,11 @@ static vit_status make_reference(sweep *s, double target, vit_text *why) {
 /* Knows the settings that stand alone; sweep_search() adds the others. */
 static vit_status list_settings(sweep *s, vit_text *why) {
     const scene_quality *q = &s->in->pipeline->scene.quality;
-    const knobs_input in = {
-        .base = q, .radius = (double)s->base.plan.scene.radius, .only = s->in->knobs, .most = s->in->settings};
+    const knobs_input in = {.base = q,
+                            .radius = (double)s->base.plan.scene.radius,
+                            .effects = s->base.plan.scene.effects,
+                            .only = s->in->knobs,
+                            .most = s->in->settings};
     vit_status status =
         s->in->list ? s->in->list(s->in->list_user, q, in.radius, &s->knobs, why) : knobs_open(&in, &s->knobs, why);
     if (status != VIT_OK)

@@ -5,16 +5,42 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* META's part of direct light. */
+typedef struct direct_settings {
+    vit_u64 effects;
+    vit_u32 width, height, area_samples, sky_samples, sky_size, chain, copies;
+    float contrast, background[3], ambient[3], offset[VIT_MAX_COPIES][2];
+    vit_u32 pad;
+} direct_settings;
+
+static uint64_t settings_key(const vit_scene *s) {
+    direct_settings d;
+    memset(&d, 0, sizeof d);
+    d.effects = s->effects & ~vit_effects_upon(VIT_BIT(PHOTONS));
+    d.width = s->width;
+    d.height = s->height;
+    d.area_samples = s->area_samples;
+    d.sky_samples = s->sky_samples;
+    d.sky_size = s->sky_size;
+    d.chain = s->chain;
+    d.copies = s->copies;
+    d.contrast = s->contrast;
+    memcpy(d.background, s->background, sizeof d.background);
+    memcpy(d.ambient, s->ambient, sizeof d.ambient);
+    memcpy(d.offset, s->offset, sizeof d.offset);
+    return vit_hash(&d, sizeof d);
+}
+
 /* Of all that direct light is made from. Lights differ in their photon paths alone. */
 static uint64_t key_of(const sweep_pack *pack) {
     static const int seen[] = {VIT_SECTION_CAMS, VIT_SECTION_GEOM, VIT_SECTION_ATTR, VIT_SECTION_MATL,
-                               VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS};
+                               VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS,
+                               VIT_SECTION_EMIT, VIT_SECTION_SKYT};
     const vit_pack_entry *table = (const void *)((const char *)pack->bytes + sizeof(vit_pack_header));
     const vit_scene *meta = (const void *)((const char *)pack->bytes + table[VIT_SECTION_META].offset);
-    uint64_t parts[sizeof seen / sizeof seen[0] + 2] = {meta->effects & ~vit_effects_upon(VIT_BIT(PHOTONS)),
-                                                        (uint64_t)meta->width << 32 | meta->height};
+    uint64_t parts[sizeof seen / sizeof seen[0] + 1] = {settings_key(meta)};
     for (size_t i = 0; i < sizeof seen / sizeof seen[0]; i++)
-        parts[i + 2] = table[seen[i]].hash;
+        parts[i + 1] = table[seen[i]].hash;
     return vit_hash(parts, sizeof parts);
 }
 

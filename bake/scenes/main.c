@@ -14,6 +14,7 @@ static const struct {
     {"cornell", cornell_make},
     {"furnace", furnace_make},
     {"atrium", atrium_make},
+    {"balls", balls_make},
 };
 
 static const char usage[] =

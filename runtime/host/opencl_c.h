@@ -62,11 +62,6 @@ static inline uint add_sat(uint a, uint b) {
     return a + b < a ? UINT32_MAX : a + b;
 }
 
-/* To the nearest, ties to even: the default rounding mode, which the device sees to. */
-static inline int convert_int_rte(float x) {
-    return (int)__builtin_rintf(x);
-}
-
 static inline int host_min_i(int a, int b) {
     return b < a ? b : a;
 }

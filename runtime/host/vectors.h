@@ -59,9 +59,6 @@ HOST_OF_LANES(host_sqrt, E)
 #define E(i) __builtin_floorf(x[i])
 HOST_OF_LANES(host_floor, E)
 #undef E
-#define E(i) __builtin_rintf(x[i])
-HOST_OF_LANES(host_rint, E)
-#undef E
 
 static inline lf host_fabs(lf x) {
     return (lf)((li)x & 0x7fffffff);
@@ -100,7 +97,6 @@ static inline li host_max_l(li a, li b) {
     return l_sel_i(b > a, b, a);
 }
 
-#define L_TO_INT_RTE(x) L_TRUNC(host_rint(x))
 #define fma(a, b, c) _Generic((a), lf : host_fma, default : __builtin_fmaf)(a, b, c)
 #define sqrt(x) _Generic((x), lf : host_sqrt, default : __builtin_sqrtf)(x)
 #define floor(x) _Generic((x), lf : host_floor, default : __builtin_floorf)(x)

@@ -34,6 +34,7 @@ static const char kernels[] =
     "MAP(map_srgb, y = srgb_curve(x); z = L_FROM_INT(to_steps(y, 255.0f)))\n"
     "MAP(map_albedo, lv3 a = l_decode_albedo(L_AS_UINT(x)); y = a.x + a.y * 2.0f + a.z * 4.0f; z = "
     "L_AS_FLOAT(l_encode_albedo(a)))\n"
+    "MAP(map_whole, li i = L_AS_INT(x); y = l_snorm16((i << 16) >> 16); z = L_FROM_INT(l_nearest(L_FROM_INT(i) * 0.25f)))\n"
     "kernel void map_normal(global const float *in, global float *out, global float *second)\n" /* 3 planes; 3 planes; codes */
     "{\n"
     "    size_t i = get_global_id(0) * VIT_LANES, n = get_global_size(0) * VIT_LANES;\n"
@@ -281,6 +282,20 @@ static void every_albedo_code_comes_back_as_itself(void **state) {
 }
 
 /* The inputs of each function: its domain at random, with the ends. */
+static void sixteen_bits_are_divided_and_quarters_rounded_to_the_bit(void **state) {
+    map m = map_open(16);
+    (void)state;
+    for (int32_t i = 0; i < (int32_t)CHUNK; i++)
+        m.in[i] = from_bits((uint32_t)(i - (int32_t)CHUNK / 2)); /* each 16-bit number many times; quarters up to 2^19 */
+    map_run(&m, "map_whole", 1);
+    for (int32_t i = 0; i < (int32_t)CHUNK; i++) {
+        const int32_t x = i - (int32_t)CHUNK / 2;
+        assert_int_equal(to_bits(m.out[i]), to_bits((float)(int16_t)(x & 0xffff) / 32767.0f));
+        assert_int_equal((int32_t)m.second[i], (int32_t)nearbyint(x * 0.25)); /* ties to even */
+    }
+    map_close(&m);
+}
+
 static void domain(const char *kernel, float *in, uint64_t seed) {
     if (strcmp(kernel, "map_normal") == 0) {
         random_normals(in);
@@ -323,6 +338,7 @@ int main(void) {
         cmocka_unit_test(the_transfer_curve_keeps_its_bound_and_never_steps_down),
         cmocka_unit_test(normals_come_back_within_their_bound),
         cmocka_unit_test(every_albedo_code_comes_back_as_itself),
+        cmocka_unit_test(sixteen_bits_are_divided_and_quarters_rounded_to_the_bit),
         cmocka_unit_test(one_eight_and_sixteen_lanes_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -231,7 +231,7 @@ static void sky_direction(double u, double v, double d[3]) {
 }
 
 /* Irradiance of the picture on a floor, by quadrature over the sphere in latitude and longitude: another way than the reference's. */
-static double sky_irradiance(const vit_sky_texel *sky) {
+static double sky_irradiance(const vit_sky_texel *picture) {
     enum { STEPS = 1500 };
     double sum = 0;
     for (int i = 0; i < STEPS; i++)
@@ -241,7 +241,7 @@ static double sky_irradiance(const vit_sky_texel *sky) {
             const double size = fabs(d[0]) + fabs(d[1]) + fabs(d[2]), x = d[0] / size, y = d[1] / size;
             const double u = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x, v = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
             const double px = (u + 1) / 2 * SKY - 0.5, py = (v + 1) / 2 * SKY - 0.5, fx = px - floor(px), fy = py - floor(py);
-            const vit_sky_texel *t = sky + ((int)floor(py) + 1) * (SKY + 2) + (int)floor(px) + 1;
+            const vit_sky_texel *t = picture + ((int)floor(py) + 1) * (SKY + 2) + (int)floor(px) + 1;
             const double radiance = (1 - fy) * ((1 - fx) * (double)t[0].radiance[0] + fx * (double)t[1].radiance[0]) +
                                     fy * ((1 - fx) * (double)t[SKY + 2].radiance[0] + fx * (double)t[SKY + 3].radiance[0]);
             sum += radiance * cos(theta) * sin(theta) * LAB_PI / 2 / STEPS * LAB_PI / STEPS;
@@ -254,7 +254,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
     (void)state;
     enum { SIDE = 32 };
     static const float eye[3] = {0.1f, 0.4f, 0.2f};
-    static vit_sky_texel sky[(SKY + 2) * (SKY + 2)];
+    static vit_sky_texel picture[(SKY + 2) * (SKY + 2)];
     double wanted[SIDE * SIDE];
     reference_lab l;
     room *r = room_empty(0.6f);
@@ -268,7 +268,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
             const int ix = !inside && x >= 0 && x < SKY ? sx : x < 0 ? 0 : x >= SKY ? SKY - 1 : x,
                       iy = !inside && y >= 0 && y < SKY ? sy : y < 0 ? 0 : y >= SKY ? SKY - 1 : y;
             sky_direction(2 * (ix + 0.5) / SKY - 1, 2 * (iy + 0.5) / SKY - 1, d);
-            vit_sky_texel *t = sky + (y + 1) * (SKY + 2) + x + 1;
+            vit_sky_texel *t = picture + (y + 1) * (SKY + 2) + x + 1;
             for (int k = 0; k < 3; k++)
                 t->radiance[k] = (float)(1 + 0.5 * d[1] + 0.3 * d[0]) * (float)(k + 1);
             if (iy == 26 && (ix == 14 || ix == 15))
@@ -278,9 +278,9 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
     see_floor(&l, eye);
     l.meta.effects = VIT_BIT(SKY_LIGHT) | VIT_BIT(SKY_IMAGE);
     l.meta.sky_size = SKY;
-    l.sections.data[VIT_SECTION_SKYT] = sky;
+    l.sections.data[VIT_SECTION_SKYT] = picture;
     l.in.max_samples = 2048;
-    const double irradiance = sky_irradiance(sky);
+    const double irradiance = sky_irradiance(picture);
     for (uint32_t i = 0; i < SIDE * SIDE; i++)
         wanted[i] = (double)0.6f / LAB_PI * irradiance;
     expect_pixels("floor under a picture of a sky with a sun", &l, 1, wanted);
@@ -469,6 +469,93 @@ static void a_lobe_reflects_a_square(void **state) {
     }
 }
 
+/* Means of an image against means of what is wanted over the inner half of the frame, within `bound`, and over its quarters within four
+ * times as much: photons blur edges. */
+static void expect_blurred(const char *what, const reference *r, const double *image, const double *wanted, double bound) {
+    const uint32_t side = r->width;
+    double sum[4] = {0}, all[4] = {0};
+    for (uint32_t y = side / 4; y < side - side / 4; y++)
+        for (uint32_t x = side / 4; x < side - side / 4; x++) {
+            const int quarter = (x >= side / 2) + 2 * (y >= side / 2);
+            sum[quarter] += image[3 * (y * side + x)];
+            all[quarter] += wanted[y * side + x];
+        }
+    for (int q = 0; q < 4; q++)
+        expect_within("a quarter of what follows", sum[q], all[q], 4 * bound);
+    expect_within(what, sum[0] + sum[1] + sum[2] + sum[3], all[0] + all[1] + all[2] + all[3], bound);
+}
+
+/* A lamp beside a mirror lights the floor a second time from behind it. */
+static void a_mirror_sends_a_lamp_s_light_on(void **state) {
+    (void)state;
+    enum { SIDE = 16 };
+    static const float wide_corner[3] = {-2, -0.5f, 2}, wide[3] = {4, 0, 0}, away[3] = {0, 0, -4}, eye[3] = {0.1f, 0, 0},
+                       mirror[3] = {1.5f, -0.5f, -3}, up[3] = {0, 3, 0}, along[3] = {0, 0, 6};
+    const double lamp[3] = {0.2, 0.6, -0.1}, image[3] = {2.8, 0.6, -0.1};
+    double wanted[SIDE * SIDE];
+    reference_lab l;
+    room *r = room_empty(0.5f);
+    room_quad(r, wide_corner, wide, away, 0);
+    room_quad(r, mirror, up, along, 1);
+    r->lights[0] = room_point_light((float)lamp[0], (float)lamp[1], (float)lamp[2], 16);
+    lab_open(&l, r, SIDE, 1, 2);
+    see_floor(&l, eye);
+    material_of(&l, 1, VIT_MIRROR, 0.9f, 1, 1);
+    l.in.max_samples = 1024;
+    reference f = lab_render(&l, 0);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        double p[3], d[3];
+        floor_point(SIDE, i, p);
+        const double far = unit_to(p, image, d);
+        wanted[i] = 0.5 / LAB_PI * d[1] / far / far * (double)0.9f;
+    }
+    expect_blurred("floor lit by a lamp's image in a mirror", &f, f.limited, wanted, 5e-3);
+    reference_free(&f);
+    static const bool direct_only[ROOM_LIGHTS] = {true};
+    l.in.direct_only = direct_only;
+    f = lab_render(&l, 0);
+    assert_true(f.direct[0] > 0 && f.limited[0] == 0 && f.unlimited[0] == 0);
+    reference_free(&f);
+    lab_close(&l);
+}
+
+/* The sun through a slab of glass: all its inner reflections leave in the same direction. */
+static void a_slab_lets_the_sun_through(void **state) {
+    (void)state;
+    enum { SIDE = 16 };
+    static const float wide_corner[3] = {-2, -0.5f, 2}, wide[3] = {4, 0, 0}, away[3] = {0, 0, -4}, eye[3] = {0.1f, 0, 0},
+                       upper[3] = {-3, 0.4f, 3}, lower[3] = {-3, 0.3f, -3}, slab_wide[3] = {6, 0, 0}, slab_deep[3] = {0, 0, 6},
+                       slab_away[3] = {0, 0, -6};
+    const double absorption = 3, ior = 1.5, thick = (double)(0.4f - 0.3f);
+    double wanted[SIDE * SIDE];
+    reference_lab l;
+    room *r = room_empty(0.5f);
+    room_quad(r, wide_corner, wide, away, 0);
+    room_quad(r, upper, slab_wide, slab_away, 1);
+    room_quad(r, lower, slab_wide, slab_deep, 1);
+    lab_open(&l, r, SIDE, 1, 8);
+    see_floor(&l, eye);
+    material_of(&l, 1, VIT_GLASS, 1, 1, (float)ior);
+    for (int k = 0; k < 3; k++)
+        l.room->materials[1].absorption[k] = (float)absorption;
+    l.room->materials[0].albedo[0] = 0.01f; /* little comes back from the floor and the glass */
+    for (uint32_t i = 0; i < LAB_FRAMES; i++)
+        l.lights[i] = (vit_light){.kind = VIT_LIGHT_DIRECTIONAL,
+                                  .position = {-1.8f, 2.4f, 0},
+                                  .direction = {0.6f, -0.8f, 0},
+                                  .cos_outer = 1,
+                                  .spot_scale = 2.2f,
+                                  .intensity = {5, 5, 5}};
+    l.in.max_samples = 512;
+    reference f = lab_render(&l, 0);
+    const double part = fresnel(acos(0.8), ior), left = exp(-absorption * thick / cos(asin(0.6 / ior)));
+    for (uint32_t i = 0; i < SIDE * SIDE; i++)
+        wanted[i] = (double)0.01f / LAB_PI * 5 * 0.8 * (1 - part) * (1 - part) * left / (1 - part * part * left * left);
+    expect_blurred("floor in the sun under a slab", &f, f.limited, wanted, 5e-3);
+    reference_free(&f);
+    lab_close(&l);
+}
+
 /* A block about (0, -0.2, 0) of material 2. */
 static void add_block(room *r) {
     static const float corner[WALLS][3] = {{-1, -1, 1}, {1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, -1, -1}, {1, -1, 1}};
@@ -608,6 +695,8 @@ int main(void) {
         cmocka_unit_test(a_pane_lets_a_lamp_through),
         cmocka_unit_test(a_lobe_reflects_by_its_formula),
         cmocka_unit_test(a_lobe_reflects_a_square),
+        cmocka_unit_test(a_mirror_sends_a_lamp_s_light_on),
+        cmocka_unit_test(a_slab_lets_the_sun_through),
         cmocka_unit_test(furnaces_stay_as_they_are),
         cmocka_unit_test(pixels_are_means_under_their_filter),
         cmocka_unit_test(the_worst_of_all_is_a_row_of_the_catalogue),

@@ -24,7 +24,7 @@ static int begin(void **state) {
 static knob_list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
     knob_list l;
     vit_text why = {""};
-    const knobs_input in = {.base = q, .radius = radius, .only = only, .most = most};
+    const knobs_input in = {.base = q, .radius = radius, .effects = ~(uint64_t)0, .only = only, .most = most};
     if (knobs_open(&in, &l, &why) != VIT_OK || knobs_spread(&l, most, &why) != VIT_OK)
         fail_msg("%s", why.text);
     return l;

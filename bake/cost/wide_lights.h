@@ -1,12 +1,12 @@
-/* emitters.c: surfaces and a sky that light the scene: points on them, directions to them, and with which density these are drawn,
+/* wide_lights.c: surfaces and a sky that light the scene: points on them, directions to them, and with which density these are drawn,
  * so that light found by looking for it and light found by chance can be weighed against each other (multiple importance sampling,
  * Veach and Guibas 1995, with the balance heuristic). */
-#ifndef VIT_COST_EMITTERS_H
-#define VIT_COST_EMITTERS_H
+#ifndef VIT_COST_WIDE_LIGHTS_H
+#define VIT_COST_WIDE_LIGHTS_H
 
 #include "photon_rays.h"
 
-typedef struct emitters {
+typedef struct wide_lights {
     const photon_scene *scene;
     const float *background; /* W/(m2 sr) */
     /* Area lights: triangles, the sum of area times luminance up to each one's end, and for all of the scene's triangles the density
@@ -20,31 +20,31 @@ typedef struct emitters {
     uint32_t sky_size;
     bool sky_lights;
     double *sky_rows, *sky_texels;
-} emitters;
+} wide_lights;
 
 /* `sky`: section SKYT. False: out of memory; there is nothing to close. The scene's records are used in place. */
-bool emitters_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, emitters *out);
-void emitters_close(emitters *e);
+bool wide_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, wide_lights *out);
+void wide_close(wide_lights *e);
 
 /* Radiance of the sky in the unit direction d, W/(m2 sr). */
-void emitters_sky(const emitters *e, vec3 d, double radiance[3]);
+void wide_sky(const wide_lights *e, vec3 d, double radiance[3]);
 /* Does the triangle light others? */
-bool emitters_lights(const emitters *e, uint32_t triangle);
+bool wide_shines(const wide_lights *e, uint32_t triangle);
 
 /* What a place sees of a light: radiance from the unit direction `to`, whose density among the directions drawn is 1/sr. */
-typedef struct emitters_point {
+typedef struct wide_point {
     vec3 to;
     float distance; /* m, of a shadow ray */
     double radiance[3];
     double density;
-} emitters_point;
+} wide_point;
 
 /* A point of the area lights as seen from p; u, v: 0..1. False: it is cut out there. */
-bool emitters_area_point(const emitters *e, vec3 p, double u, double v, emitters_point *out);
+bool wide_area_point(const wide_lights *e, vec3 p, double u, double v, wide_point *out);
 /* A direction to the sky. False: the sky has no picture, or a black one; chance finds a constant sky soon enough. */
-bool emitters_sky_point(const emitters *e, double u, double v, emitters_point *out);
+bool wide_sky_point(const wide_lights *e, double u, double v, wide_point *out);
 /* Density of a direction that found the triangle `distance` metres away, or the sky: 0 if it is not drawn. */
-double emitters_area_density(const emitters *e, uint32_t triangle, vec3 d, float distance);
-double emitters_sky_density(const emitters *e, vec3 d);
+double wide_area_density(const wide_lights *e, uint32_t triangle, vec3 d, float distance);
+double wide_sky_density(const wide_lights *e, vec3 d);
 
 #endif
