@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PATHS (1u << 16)  /* of a map, shared by the lights */
-#define LEAST 1024u       /* of a light */
-#define CHUNK 1024u       /* paths that a thread takes at a time */
-#define EVENTS 64u        /* mirrors and glass on a path, at most */
-#define ALPHA (2.0 / 3)   /* Knaus and Zwicker: squared radii go with round^(ALPHA - 1) */
-#define NEIGHBOURS 12     /* photons within the first radius of a photon, about */
-#define ASKED 256u        /* photons that are asked for their neighbours */
-#define FLAT 0.25f        /* of the radius: how far from a place's plane photons count */
+#define PATHS (1u << 16) /* of a map, shared by the lights */
+#define LEAST 1024u      /* of a light */
+#define CHUNK 1024u      /* paths that a thread takes at a time */
+#define EVENTS 64u       /* mirrors and glass on a path, at most */
+#define ALPHA (2.0 / 3)  /* Knaus and Zwicker: squared radii go with round^(ALPHA - 1) */
+#define NEIGHBOURS 12    /* photons within the first radius of a photon, about */
+#define ASKED 256u       /* photons that are asked for their neighbours */
+#define FLAT 0.25f       /* of the radius: how far from a place's plane photons count */
 
 static bool gives_indirect(const path_scene *p, uint32_t light) {
     return !(p->direct_only && p->direct_only[light]);

@@ -1,10 +1,10 @@
-/* Unidirectional path tracing (Kajiya 1986) with a shadow ray to every light at every hit: in scenes of matt surfaces and small lights
- * the adjoint of kernels/photons.cl, from which it differs in rounding alone. Where photons leave the runtime's scene or lose their
- * power, paths end.
+/* Unidirectional path tracing (Kajiya 1986) with a shadow ray to every light at every hit: in scenes of matt surfaces and small
+ * lights the adjoint of kernels/photons.cl, from which it differs in rounding alone. Where photons leave the runtime's scene or
+ * lose their power, paths end.
  *
  * Small lights (points, spots, directions) are found by shadow rays alone, area lights and the sky both by these and by chance
- * (wide_lights.h), through mirrors and glass by chance alone. Radiance inside glass is basic radiance (divided by the squared index),
- * which no refraction changes. Small lights' light by mirrors and glass are photons (caustics.h). */
+ * (wide_lights.h), through mirrors and glass by chance alone. Radiance inside glass is basic radiance (divided by the squared
+ * index), which no refraction changes. Small lights' light by mirrors and glass are photons (caustics.h). */
 #include "paths.h"
 #include "caustics.h"
 #include "lights.h"
@@ -77,8 +77,8 @@ typedef struct small_lights {
     double limited[3], unlimited[3]; /* through panes: at most `most`, and any number */
 } small_lights;
 
-/* Passes the panes between o and what is `distance` metres along d. Returns how many there are, and at `part` what they let through;
- * -1: something else is in the way. */
+/* Passes the panes between o and what is `distance` metres along d. Returns how many there are, and at `part` what they let
+ * through; -1: something else is in the way. */
 static int pass_panes(const path_scene *s, vec3 o, vec3 d, float distance, double part[3], uint64_t *rays) {
     part[0] = part[1] = part[2] = 1;
     for (int panes = 0; panes < (int)CHAIN; panes++) {
@@ -159,9 +159,10 @@ void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double
                      (inside ? exp(-(double)m->absorption[k] * (double)t) : 1);
 }
 
-/* The view sample of the ray through the point (fx, fy) of the frame, pixels; path: of the sequence that `seed` names, or NULL: the
- * same for all paths, and where it meets glass it is `random`. */
-static void look(const path_scene *p, float fx, float fy, const uint32_t *path, uint32_t seed, view_sample *out, uint64_t *rays) {
+/* The view sample of the ray through the point (fx, fy) of the frame, pixels; path: of the sequence that `seed` names, or NULL:
+ * the same for all paths, and where it meets glass it is `random`. */
+static void look(const path_scene *p, float fx, float fy, const uint32_t *path, uint32_t seed, view_sample *out,
+                 uint64_t *rays) {
     const vit_camera *c = p->camera;
     const vec3 right = vec3_load(c->right);
     const float cone = sqrtf(fmaf(right.z, right.z, fmaf(right.y, right.y, right.x * right.x)));
@@ -224,7 +225,8 @@ static float tent(float u) {
 }
 
 /* The view sample of one path. */
-static void look_at_random(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, view_sample *out, uint64_t *rays) {
+static void look_at_random(const path_scene *p, const view_sample *v, uint32_t seed, uint32_t i, view_sample *out,
+                           uint64_t *rays) {
     float fx = 0.5f, fy = 0.5f;
     if (p->filter != PATH_CENTRE) {
         sequence_point(pcg(seed ^ OF_PIXEL), i, &fx, &fy);
@@ -249,16 +251,17 @@ static bool survives(double weight[3], uint32_t random) {
     return true;
 }
 
-/* A path on its way. Its sums are Pi times radiance over the view sample's albedo, or over 1 if that has a lobe, so that at matt
- * surfaces weight * irradiance is their contribution: cosine sampling cancels cosines and 1 / Pi. */
+/* A path on its way. Its sums are Pi times radiance over the view sample's albedo, or over 1 if that has a lobe, so that at
+ * matt surfaces weight * irradiance is their contribution: cosine sampling cancels cosines and 1 / Pi. */
 typedef struct walk {
     const path_scene *p;
     const caustics *caustics; /* may be NULL */
     uint64_t *rays;
     path_sums *out;
-    shine_place at;    /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
+    shine_place at; /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
     double weight[3];
-    double density;    /* of the direction taken from there; 0: a mirror or glass came after, beyond which lights are found by chance */
+    double density; /* of the direction taken from there; 0: a mirror or glass came after, beyond which lights are found by
+                       chance */
 } walk;
 
 /* Light that the path's place gets through mirrors and glass. */
@@ -441,8 +444,8 @@ static void add_view(const view_sample *v, double count, bool random, path_sums 
     }
 }
 
-void paths_trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count, bool only_limited,
-                 path_sums *out, uint64_t *rays) {
+void paths_trace(const path_scene *p, const caustics *c, const view_sample *v, uint32_t seed, uint32_t first, uint32_t count,
+                 bool only_limited, path_sums *out, uint64_t *rays) {
     path_sums sums = {.limited = {0}};
     *out = sums;
     for (uint32_t i = first; i < first + count && v->random; i++) {

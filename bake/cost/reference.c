@@ -19,14 +19,14 @@ typedef struct rendering {
     const reference_input *in;
     path_scene scene;
     reference_state state;
-    view_sample *views;    /* of the rank's own pixels */
+    view_sample *views;                     /* of the rank's own pixels */
     caustics caustics[REFERENCE_SEQUENCES]; /* of this round */
-    float first_radius;    /* of their photons; 0: there are none */
-    pixel_sums *round;     /* sums of this round; zero for other ranks' pixels until they are gathered */
-    uint32_t chunks, most; /* most: rounds */
-    double began, spent;   /* clock; seconds of earlier runs */
-    double error;          /* so far */
-    double first_share;    /* of the work that was done before this run, for the time left */
+    float first_radius;                     /* of their photons; 0: there are none */
+    pixel_sums *round;                      /* sums of this round; zero for other ranks' pixels until they are gathered */
+    uint32_t chunks, most;                  /* most: rounds */
+    double began, spent;                    /* clock; seconds of earlier runs */
+    double error;                           /* so far */
+    double first_share;                     /* of the work that was done before this run, for the time left */
 } rendering;
 
 static double now(void) {
@@ -151,16 +151,14 @@ static void free_caustics(rendering *r) {
 }
 
 /* The round's photons, the same on all ranks, and a sequence's own each, so that variances hold theirs. */
-static vit_status trace_caustics(rendering *r, vit_text *why) {
+static vit_status trace_caustics(rendering *r, uint64_t *rays, vit_text *why) {
     const unsigned threads = chunks_threads(r->in->threads, spread_neighbours());
-    uint64_t rays = 0;
     free_caustics(r);
     for (uint32_t q = 0; q < REFERENCE_SEQUENCES && r->first_radius > 0.0f; q++) {
         const uint32_t number = pcg(r->in->frame ^ pcg(r->state.rounds * REFERENCE_SEQUENCES + q));
-        if (!caustics_trace(&r->scene, r->first_radius, number, r->state.rounds, threads, r->caustics + q, &rays))
+        if (!caustics_trace(&r->scene, r->first_radius, number, r->state.rounds, threads, r->caustics + q, rays))
             return fail(why, VIT_FAILED, "out of memory");
     }
-    r->state.rays += rays;
     return VIT_OK;
 }
 
@@ -173,7 +171,8 @@ static vit_status trace_rounds(rendering *r, vit_text *why) {
     double saved = now();
     r->first_share = r->state.rounds / rounds_needed(r);
     while (!finished(r)) {
-        vit_status status = trace_caustics(r, why);
+        uint64_t rays = 0; /* counted when the round is done */
+        vit_status status = trace_caustics(r, &rays, why);
         if (spread_any(status != VIT_OK))
             return status != VIT_OK ? status : fail(why, VIT_FAILED, "another rank failed");
         if (!run_chunks(r, path_chunk, true)) {
@@ -181,6 +180,7 @@ static vit_status trace_rounds(rendering *r, vit_text *why) {
             return status == VIT_OK ? fail(why, VIT_FAILED, "interrupted") : status;
         }
         state_add(&r->state, r->round);
+        r->state.rays += rays;
         r->error = state_error(&r->state);
         status = save(r, false, &saved, why);
         if (status != VIT_OK)
@@ -263,7 +263,8 @@ vit_status reference_render(const reference_input *in, reference *out, vit_text 
 }
 
 void reference_free(reference *r) {
-    double *const images[] = {r->direct, r->limited, r->unlimited, r->direct_variance, r->limited_variance, r->unlimited_variance};
+    double *const images[] = {r->direct,          r->limited,          r->unlimited,
+                              r->direct_variance, r->limited_variance, r->unlimited_variance};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         free(images[i]);
     *r = (reference){0};

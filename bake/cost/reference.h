@@ -1,14 +1,14 @@
 /* reference.c: what a frame should look like: a path tracer on Embree with the runtime's camera, lights, materials and
  * geometry.
  *
- * One camera ray a pixel, through its centre, as the runtime's, so that all that differs is the light; in a pack with several copies
- * a pixel rays of the whole filter. Mirrors and glass on their way, and on that of light, are followed to the end. Direct light of
- * points, spots and directions is computed exactly (they cast hard shadows), that of surfaces and the sky as paths find it; indirect
- * light by paths with a shadow ray to every light at every hit. The first hit's irradiance is about its shading normal, from the
- * front of its geometric side; all reflections are about geometric normals, as photons reflect, but mirrors' and glass's. Phong lobes
- * reflect all light by their BRDF. Ambient light is added at view samples. Dark sides (reach.h) are an
- * approximation of the runtime's and are not made; nor is a view sample's albedo or normal rounded.
- * Radiance times the camera's exposure, as in RGBA32F frames; sums in double. Method and sources: bake/cost/README.md. */
+ * One camera ray a pixel, through its centre, as the runtime's, so that all that differs is the light; in a pack with several
+ * copies a pixel rays of the whole filter. Mirrors and glass on their way, and on that of light, are followed to the end.
+ * Direct light of points, spots and directions is computed exactly (they cast hard shadows), that of surfaces and the sky as
+ * paths find it; indirect light by paths with a shadow ray to every light at every hit. The first hit's irradiance is about its
+ * shading normal, from the front of its geometric side; all reflections are about geometric normals, as photons reflect, but
+ * mirrors' and glass's. Phong lobes reflect all light by their BRDF. Ambient light is added at view samples. Dark sides
+ * (reach.h) are an approximation of the runtime's and are not made; nor is a view sample's albedo or normal rounded. Radiance
+ * times the camera's exposure, as in RGBA32F frames; sums in double. Method and sources: bake/cost/README.md. */
 #ifndef VIT_COST_REFERENCE_H
 #define VIT_COST_REFERENCE_H
 
@@ -26,8 +26,8 @@ typedef struct reference_input {
     uint32_t bounces; /* hits of the limited paths: up to bounces - 1 reflections, as vit_scene.bounces */
     double target;    /* stop when the standard error's NMSE (mean variance / squared mean of the total) is below this, > 0 */
     uint32_t max_samples; /* and at so many paths a pixel in any case; whole rounds, 1 .. REFERENCE_MOST */
-    bool face_normals;    /* the first hit's indirect irradiance, and what it gets of area lights and the sky, is about its geometric
-                           * normal too, as photons count it; independent random numbers, so that the two pictures' errors are */
+    bool face_normals; /* the first hit's irradiance, but that of small lights' direct light, is about its geometric normal too,
+                        * as photons count it; independent random numbers, so that the two pictures' errors are */
     unsigned threads;  /* 0: all cores, shared with the ranks on this machine; changes no bit, nor does the number of ranks */
     const char *cache; /* folder for finished and unfinished references, NULL: none. One there may have more samples */
     const volatile sig_atomic_t *cancel; /* a signal handler sets it: the work is saved and VIT_FAILED returned; may be NULL */
@@ -42,12 +42,12 @@ typedef struct reference_input {
 #define REFERENCE_MOST (1u << 18) /* paths a pixel, at most */
 
 typedef struct reference {
-    uint32_t width, height;   /* of the grid */
-    uint32_t samples;         /* paths a pixel */
-    double *direct;           /* emission, background and ambient light included */
-    double *limited;          /* indirect light of at most bounces - 1 reflections */
-    double *unlimited;        /* indirect light of all reflections (ended by Russian roulette) */
-    double *direct_variance;  /* of the mean; 0 where nothing of it is left to chance */
+    uint32_t width, height;  /* of the grid */
+    uint32_t samples;        /* paths a pixel */
+    double *direct;          /* emission, background and ambient light included */
+    double *limited;         /* indirect light of at most bounces - 1 reflections */
+    double *unlimited;       /* indirect light of all reflections (ended by Russian roulette) */
+    double *direct_variance; /* of the mean; 0 where nothing of it is left to chance */
     double *limited_variance;
     double *unlimited_variance;
     double error;   /* NMSE of direct + limited's standard error */

@@ -44,7 +44,8 @@ static void pixel_chunk(void *user, uint32_t chunk, uint64_t *rays) {
         view_sample v;
         path_sums path;
         paths_view(&t->scene, x, y, &v, rays);
-        paths_trace(&t->scene, t->radius > 0.0f ? &t->caustics : NULL, &v, pcg(x ^ pcg(y ^ pcg(t->number ^ SEED))), 0, 1, true, &path, rays);
+        paths_trace(&t->scene, t->radius > 0.0f ? &t->caustics : NULL, &v, pcg(x ^ pcg(y ^ pcg(t->number ^ SEED))), 0, 1, true,
+                    &path, rays);
         keep(t, x, y, &v, &path);
     }
 }
@@ -57,7 +58,7 @@ reference_timing reference_timer_frame(reference_timer *t) {
     caustics_free(&t->caustics);
     if (!caustics_trace(&t->scene, t->radius, pcg(t->number ^ SEED), 0, t->threads, &t->caustics, &r.rays))
         t->caustics = (caustics){.count = 0}; /* out of memory: a frame without them */
-    (void)chunks_run(&w, &r.rays); /* cannot be cancelled */
+    (void)chunks_run(&w, &r.rays);            /* cannot be cancelled */
     r.ms = now_ms() - began;
     t->number++;
     const cost_error e = metrics_compare(t->total, t->image, NULL, t->grid_width, t->grid_height);

@@ -26,8 +26,8 @@ static inline uint32_t sequence_permute(uint32_t v, uint32_t seed) {
 
 #define SEQUENCE_LENGTH (1u << 16)
 
-/* Point i < SEQUENCE_LENGTH of the sequence that `seed` names, as 32-bit fractions: its first 2^n points are stratified; different
- * seeds' points are independent. */
+/* Point i < SEQUENCE_LENGTH of the sequence that `seed` names, as 32-bit fractions: its first 2^n points are stratified;
+ * different seeds' points are independent. */
 static inline void sequence_bits(uint32_t seed, uint32_t i, uint32_t *u, uint32_t *v) {
     const uint32_t shuffled = sequence_reverse(sequence_permute(sequence_reverse(i), seed)) & (SEQUENCE_LENGTH - 1);
     uint32_t second = 0; /* Sobol's second dimension; the first is the reversed index */

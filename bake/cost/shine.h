@@ -17,8 +17,8 @@ typedef struct shine_place {
     bool glossy; /* it has a lobe */
 } shine_place;
 
-/* cos^m of the angle between l and the mirrored way out: times (m + 2) / (2 pi) the lobe's BRDF, times (m + 1) / (2 pi) the density
- * of directions about it. */
+/* cos^m of the angle between l and the mirrored way out: times (m + 2) / (2 pi) the lobe's BRDF, times (m + 1) / (2 pi) the
+ * density of directions about it. */
 static inline double shine_power(const shine_place *s, vec3 l) {
     const double c = 2 * (double)vec3_dot(s->normal, l) * (double)vec3_dot(s->normal, s->out) - (double)vec3_dot(l, s->out);
     return c > 0 ? pow(fmin(c, 1), (double)s->exponent) : 0;

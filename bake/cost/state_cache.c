@@ -69,16 +69,18 @@ uint64_t state_key(const reference_input *in) {
     const void *const *data = in->sections->data;
     const vit_scene *s = data[VIT_SECTION_META];
     const key_settings settings = settings_of(in);
-    const uint64_t parts[] = {vit_hash(&settings, sizeof settings),
-                              hash_lights(in),
-                              vit_hash((const vit_camera *)data[VIT_SECTION_CAMS] + in->frame, sizeof(vit_camera)),
-                              vit_hash(data[VIT_SECTION_GEOM], s->triangles * sizeof(vit_triangle)),
-                              vit_hash(data[VIT_SECTION_ATTR], s->triangles * sizeof(vit_attributes)),
-                              vit_hash(data[VIT_SECTION_MATL], s->materials * sizeof(vit_material)),
-                              vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
-                              vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
-                              vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32)),
-                              s->sky_size ? vit_hash(data[VIT_SECTION_SKYT], (s->sky_size + (size_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel)) : 0};
+    const uint64_t parts[] = {
+        vit_hash(&settings, sizeof settings),
+        hash_lights(in),
+        vit_hash((const vit_camera *)data[VIT_SECTION_CAMS] + in->frame, sizeof(vit_camera)),
+        vit_hash(data[VIT_SECTION_GEOM], s->triangles * sizeof(vit_triangle)),
+        vit_hash(data[VIT_SECTION_ATTR], s->triangles * sizeof(vit_attributes)),
+        vit_hash(data[VIT_SECTION_MATL], s->materials * sizeof(vit_material)),
+        vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
+        vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
+        vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32)),
+        s->sky_size ? vit_hash(data[VIT_SECTION_SKYT], (s->sky_size + (size_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))
+                    : 0};
     return vit_hash(parts, sizeof parts);
 }
 

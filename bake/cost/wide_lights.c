@@ -88,10 +88,10 @@ static bool open_sky(wide_lights *e) {
 
 bool wide_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, wide_lights *out) {
     *out = (wide_lights){.scene = s,
-                      .background = meta->background,
-                      .sky = meta->sky_size > 0 ? sky : NULL,
-                      .sky_size = meta->sky_size,
-                      .sky_lights = (meta->effects & VIT_BIT(SKY_LIGHT)) != 0};
+                         .background = meta->background,
+                         .sky = meta->sky_size > 0 ? sky : NULL,
+                         .sky_size = meta->sky_size,
+                         .sky_lights = (meta->effects & VIT_BIT(SKY_LIGHT)) != 0};
     if (open_area(out) && open_sky(out))
         return true;
     wide_close(out);
@@ -191,8 +191,8 @@ double wide_area_density(const wide_lights *e, uint32_t triangle, vec3 d, float 
     return e->density ? e->density[triangle] * (double)distance * (double)distance / fmax(cosine, 1e-12) : 0;
 }
 
-/* A piece dx dy of the square is the piece of the unit octahedron |x| + |y| + |z| = 1 above it, of solid angle dx dy / (x2 + y2 +
- * z2)^1.5. */
+/* A piece dx dy of the square is the piece of the unit octahedron |x| + |y| + |z| = 1 above it, of solid angle dx dy / (x2 + y2
+ * + z2)^1.5. */
 double wide_sky_density(const wide_lights *e, vec3 d) {
     if (!e->sky_rows || !(e->sky_rows[e->sky_size - 1] > 0))
         return 0;

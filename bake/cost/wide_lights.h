@@ -1,6 +1,6 @@
-/* wide_lights.c: surfaces and a sky that light the scene: points on them, directions to them, and with which density these are drawn,
- * so that light found by looking for it and light found by chance can be weighed against each other (multiple importance sampling,
- * Veach and Guibas 1995, with the balance heuristic). */
+/* wide_lights.c: surfaces and a sky that light the scene: points on them, directions to them, and with which density these are
+ * drawn, so that light found by looking for it and light found by chance can be weighed against each other (multiple importance
+ * sampling, Veach and Guibas 1995, with the balance heuristic). */
 #ifndef VIT_COST_WIDE_LIGHTS_H
 #define VIT_COST_WIDE_LIGHTS_H
 
@@ -9,13 +9,13 @@
 typedef struct wide_lights {
     const photon_scene *scene;
     const float *background; /* W/(m2 sr) */
-    /* Area lights: triangles, the sum of area times luminance up to each one's end, and for all of the scene's triangles the density
-     * of points, 1/m2. NULL: none. */
+    /* Area lights: triangles, the sum of area times luminance up to each one's end, and for all of the scene's triangles the
+     * density of points, 1/m2. NULL: none. */
     uint32_t *triangles;
     double *ends, *density;
     uint32_t count;
-    /* The sky's picture; NULL: it is the background. With sky_lights it lights the scene, and has sums of texels' shares up to each
-     * one's end, row by row, and of the rows. */
+    /* The sky's picture; NULL: it is the background. With sky_lights it lights the scene, and has sums of texels' shares up to
+     * each one's end, row by row, and of the rows. */
     const vit_sky_texel *sky;
     uint32_t sky_size;
     bool sky_lights;

@@ -10,7 +10,8 @@
 
 static char program[512]; /* this one's path */
 
-/* A coloured room with a texture, a cut-out curtain and two lights, one of which gives direct light alone. */
+/* A coloured room with a texture, a cut-out curtain and two lights, one of which gives direct light alone; the ceiling shines,
+ * too, and one wall is a mirror. */
 static void open_room(reference_lab *l) {
     static const float eye[3] = {0.1f, 0.05f, 0.9f}, corner[3] = {-1, 1, -1}, right[3] = {2, 0, 0}, down[3] = {0, -2, 0},
                        curtain[3] = {-0.5f, -0.8f, -0.3f}, x[3] = {1, 0, 0}, y[3] = {0, 1.2f, 0};
@@ -27,12 +28,17 @@ static void open_room(reference_lab *l) {
     lab_open(l, r, 40, 2, 4);
     lab_look(l, 0, eye, corner, right, down);
     l->in.direct_only = direct_only;
+    r->materials[WALL_RIGHT] =
+        (vit_material){.texture = VIT_NONE, .specular = {0.9f, 0.8f, 0.7f}, .exponent = 1, .ior = 1, .kind = VIT_MIRROR};
+    r->materials[WALL_CEILING].lights = 1;
+    r->materials[WALL_CEILING].emission[0] = r->materials[WALL_CEILING].emission[2] = 0.5f;
 }
 
 static uint64_t hash_of(const reference *r) {
-    const double *const images[] = {r->direct, r->limited, r->unlimited, r->limited_variance, r->unlimited_variance};
-    uint64_t hash[7] = {r->samples, r->rays};
-    for (size_t i = 0; i < 5; i++)
+    const double *const images[] = {r->direct,          r->limited,          r->unlimited,
+                                    r->direct_variance, r->limited_variance, r->unlimited_variance};
+    uint64_t hash[8] = {r->samples, r->rays};
+    for (size_t i = 0; i < 6; i++)
         hash[2 + i] = vit_hash(images[i], (size_t)r->width * r->height * 3 * sizeof(double));
     return vit_hash(hash, sizeof hash);
 }
@@ -162,7 +168,7 @@ static void another_input_is_another_reference(void **state) {
     reference_lab l;
     char name[400];
     const folder f = folder_make();
-    uint64_t hash[7];
+    uint64_t hash[12];
     open_room(&l);
     l.in.cache = f.path;
     l.in.max_samples = 16;
@@ -179,8 +185,19 @@ static void another_input_is_another_reference(void **state) {
     hash[5] = render_hash(&l);
     l.room->materials[WALL_LEFT].albedo[0] = 0.3f;
     hash[6] = render_hash(&l);
-    assert_int_equal(folder_files(&f, name), 7);
-    for (int i = 0; i < 7; i++)
+    l.room->materials[WALL_CEILING].lights = 0;
+    hash[7] = render_hash(&l);
+    l.meta.effects = VIT_BIT(SKY_LIGHT); /* nothing of the sky is seen, but chance does not know */
+    l.meta.background[0] = 1;
+    hash[8] = render_hash(&l);
+    l.meta.ambient[1] = 1;
+    hash[9] = render_hash(&l);
+    l.meta.copies = 2;
+    hash[10] = render_hash(&l);
+    l.meta.offset[1][0] = 0.7f;
+    hash[11] = render_hash(&l);
+    assert_int_equal(folder_files(&f, name), 12);
+    for (int i = 0; i < 12; i++)
         for (int k = 0; k < i; k++)
             assert_true(hash[i] != hash[k]);
     folder_drop(&f);

@@ -1,10 +1,11 @@
 /* The reference with mirrors, glass, lobes, lights that are not points, and filters, against what can be computed without it.
  *
- * Closed forms throughout: form factors of squares, Fresnel's equations for a pane and for a slab with all its inner reflections, the
- * lobe's formula, integrals of pictures of skies, and furnaces: where all that can be seen has one radiance, so has everything
- * that reflects or lets through all light. What is drawn at random is held to five times the standard error that the reference states,
- * and that error to a bound, so that no check passes for its noise. */
+ * Closed forms throughout: form factors of squares, Fresnel's equations for a pane and for a slab with all its inner
+ * reflections, the lobe's formula, integrals of pictures of skies, and furnaces: where all that can be seen has one radiance,
+ * so has everything that reflects or lets through all light. What is drawn at random is held to five times the standard error
+ * that the reference states, and that error to a bound, so that no check passes for its noise. */
 #include "catalogue.h"
+#include "cost/paths.h"
 #include "reference_lab.h"
 #include <stdio.h>
 
@@ -16,7 +17,8 @@ static double worst;
 static void expect_within(const char *what, double found, double wanted, double bound) {
     const double off = wanted != 0 ? fabs(found / wanted - 1) : fabs(found);
     worst = fmax(worst, off / bound * WITHIN);
-    printf("%-66s %12.6g, wanted %12.6g: %+.4f %%\n", what, found, wanted, wanted != 0 ? 100 * (found / wanted - 1) : 100 * found);
+    printf("%-66s %12.6g, wanted %12.6g: %+.4f %%\n", what, found, wanted,
+           wanted != 0 ? 100 * (found / wanted - 1) : 100 * found);
     if (!(off < bound))
         fail_msg("%s: %.8g, wanted %.8g", what, found, wanted);
 }
@@ -151,7 +153,8 @@ static void a_square_lights_another_as_their_form_factor_says(void **state) {
     lab_close(&l);
 }
 
-/* Closed rooms whose walls all shine by e and reflect rho of it: each reflection adds rho^k e; without end, all is e / (1 - rho). */
+/* Closed rooms whose walls all shine by e and reflect rho of it: each reflection adds rho^k e; without end, all is e / (1 -
+ * rho). */
 static void walls_that_shine_make_a_geometric_series(void **state) {
     (void)state;
     enum { SIDE = 12, BOUNCES = 4 };
@@ -230,7 +233,8 @@ static void sky_direction(double u, double v, double d[3]) {
         d[k] /= length;
 }
 
-/* Irradiance of the picture on a floor, by quadrature over the sphere in latitude and longitude: another way than the reference's. */
+/* Irradiance of the picture on a floor, by quadrature over the sphere in latitude and longitude: another way than the
+ * reference's. */
 static double sky_irradiance(const vit_sky_texel *picture) {
     enum { STEPS = 1500 };
     double sum = 0;
@@ -239,7 +243,8 @@ static double sky_irradiance(const vit_sky_texel *picture) {
             const double theta = (i + 0.5) / STEPS * LAB_PI / 2, phi = (j + 0.5) / STEPS * LAB_PI;
             const double d[3] = {sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi)};
             const double size = fabs(d[0]) + fabs(d[1]) + fabs(d[2]), x = d[0] / size, y = d[1] / size;
-            const double u = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x, v = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
+            const double u = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x,
+                         v = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
             const double px = (u + 1) / 2 * SKY - 0.5, py = (v + 1) / 2 * SKY - 0.5, fx = px - floor(px), fy = py - floor(py);
             const vit_sky_texel *t = picture + ((int)floor(py) + 1) * (SKY + 2) + (int)floor(px) + 1;
             const double radiance = (1 - fy) * ((1 - fx) * (double)t[0].radiance[0] + fx * (double)t[1].radiance[0]) +
@@ -263,10 +268,25 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
         for (int x = -1; x <= SKY; x++) {
             double d[3];
             /* Beyond an edge the picture goes on on the other half of that edge. */
-            const int inside = x >= 0 && x < SKY && y >= 0 && y < SKY, sx = inside ? x : SKY - 1 - (x < 0 ? 0 : x >= SKY ? SKY - 1 : x),
-                      sy = inside ? y : SKY - 1 - (y < 0 ? 0 : y >= SKY ? SKY - 1 : y);
-            const int ix = !inside && x >= 0 && x < SKY ? sx : x < 0 ? 0 : x >= SKY ? SKY - 1 : x,
-                      iy = !inside && y >= 0 && y < SKY ? sy : y < 0 ? 0 : y >= SKY ? SKY - 1 : y;
+            const int inside = x >= 0 && x < SKY && y >= 0 && y < SKY,
+                      sx = inside ? x
+                                  : SKY - 1 -
+                                        (x < 0      ? 0
+                                         : x >= SKY ? SKY - 1
+                                                    : x),
+                      sy = inside ? y
+                                  : SKY - 1 -
+                                        (y < 0      ? 0
+                                         : y >= SKY ? SKY - 1
+                                                    : y);
+            const int ix = !inside && x >= 0 && x < SKY ? sx
+                           : x < 0                      ? 0
+                           : x >= SKY                   ? SKY - 1
+                                                        : x,
+                      iy = !inside && y >= 0 && y < SKY ? sy
+                           : y < 0                      ? 0
+                           : y >= SKY                   ? SKY - 1
+                                                        : y;
             sky_direction(2 * (ix + 0.5) / SKY - 1, 2 * (iy + 0.5) / SKY - 1, d);
             vit_sky_texel *t = picture + (y + 1) * (SKY + 2) + x + 1;
             for (int k = 0; k < 3; k++)
@@ -315,7 +335,8 @@ static double fresnel(double i, double ior) {
     return 0.5 * (pow(sin(i - t) / sin(i + t), 2) + pow(tan(i - t) / tan(i + t), 2));
 }
 
-/* A floor that shines, seen through glass: a pane, and a slab with light bouncing to and fro in it, some of which it absorbs. */
+/* A floor that shines, seen through glass: a pane, and a slab with light bouncing to and fro in it, some of which it absorbs.
+ */
 static void glass_lets_through_what_fresnel_leaves(void **state) {
     (void)state;
     enum { SIDE = 16 };
@@ -351,7 +372,8 @@ static void glass_lets_through_what_fresnel_leaves(void **state) {
     }
 }
 
-/* A pane between a lamp and the floor: light that went through it is no direct light, and of the runtime's paths of so many hits. */
+/* A pane between a lamp and the floor: light that went through it is no direct light, and of the runtime's paths of so many
+ * hits. */
 static void a_pane_lets_a_lamp_through(void **state) {
     (void)state;
     enum { SIDE = 12 };
@@ -436,7 +458,8 @@ static void a_lobe_reflects_by_its_formula(void **state) {
 static void a_lobe_reflects_a_square(void **state) {
     (void)state;
     enum { SIDE = 16, STEPS = 48 };
-    static const float eye[3] = {0.3f, 0.2f, 0.4f}, corner[3] = {-0.3f, 0.3f, -0.4f}, wide[3] = {0.2f, 0, 0}, deep[3] = {0, 0, 0.2f};
+    static const float eye[3] = {0.3f, 0.2f, 0.4f}, corner[3] = {-0.3f, 0.3f, -0.4f}, wide[3] = {0.2f, 0, 0},
+                       deep[3] = {0, 0, 0.2f};
     static const double exponents[] = {5, 2000};
     const double n[3] = {0, 1, 0}, matt = 0.3, specular = 0.5, from[3] = {(double)0.3f, (double)0.2f, (double)0.4f};
     for (size_t e = 0; e < 2; e++) {
@@ -469,8 +492,8 @@ static void a_lobe_reflects_a_square(void **state) {
     }
 }
 
-/* Means of an image against means of what is wanted over the inner half of the frame, within `bound`, and over its quarters within four
- * times as much: photons blur edges. */
+/* Means of an image against means of what is wanted over the inner half of the frame, within `bound`, and over its quarters
+ * within four times as much: photons blur edges. */
 static void expect_blurred(const char *what, const reference *r, const double *image, const double *wanted, double bound) {
     const uint32_t side = r->width;
     double sum[4] = {0}, all[4] = {0};
@@ -483,6 +506,34 @@ static void expect_blurred(const char *what, const reference *r, const double *i
     for (int q = 0; q < 4; q++)
         expect_within("a quarter of what follows", sum[q], all[q], 4 * bound);
     expect_within(what, sum[0] + sum[1] + sum[2] + sum[3], all[0] + all[1] + all[2] + all[3], bound);
+}
+
+/* Paths that end at the bounce limit bring what the same paths bring that go on. */
+static void limited_paths_are_the_others_cut_short(void **state) {
+    (void)state;
+    enum { SIDE = 4, PATHS = 64 };
+    static const float eye[3] = {0.1f, 0.05f, -0.2f}, corner[3] = {-1, 1, -1}, right[3] = {2, 0, 0}, down[3] = {0, -2, 0};
+    reference_lab l;
+    path_scene p;
+    uint64_t rays = 0;
+    lab_open(&l, room_closed(0.5f), SIDE, 0, 3);
+    emits(&l, WALL_CEILING, 3, 1);
+    material_of(&l, WALL_LEFT, VIT_MIRROR, 0.9f, 1, 1);
+    material_of(&l, WALL_RIGHT, VIT_MATTE, 0.4f, 20, 1);
+    lab_look(&l, 0, eye, corner, right, down);
+    assert_true(paths_open(&l.in, 1, &p));
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        view_sample v;
+        path_sums cut, whole;
+        paths_view(&p, i % SIDE, i / SIDE, &v, &rays);
+        paths_trace(&p, NULL, &v, i, 0, PATHS, true, &cut, &rays);
+        paths_trace(&p, NULL, &v, i, 0, PATHS, false, &whole, &rays);
+        assert_true(v.hit && whole.limited[0] > 0);
+        assert_memory_equal(cut.limited, whole.limited, sizeof cut.limited);
+        assert_memory_equal(cut.direct, whole.direct, sizeof cut.direct);
+    }
+    paths_close(&p);
+    lab_close(&l);
 }
 
 /* A lamp beside a mirror lights the floor a second time from behind it. */
@@ -572,7 +623,8 @@ static void add_block(room *r) {
     }
 }
 
-/* A white floor under a block, in a sky of one radiance, or in a room whose walls shine so that they have it, too: all has it. */
+/* A white floor under a block, in a sky of one radiance, or in a room whose walls shine so that they have it, too: all has it.
+ */
 static void furnaces_stay_as_they_are(void **state) {
     (void)state;
     enum { SIDE = 16 };
@@ -625,7 +677,8 @@ static void furnaces_stay_as_they_are(void **state) {
                 if (!(fabs(total / radiance - 1) < 0.25)) /* one by one, roughly: an edge too bright, a side too dark */
                     fail_msg("%s: pixel %u is %g of %g", materials[i].name, p, total, radiance);
             }
-            (void)snprintf(what, sizeof what, "furnace of a %s block %s", materials[i].name, closed ? "among shining walls" : "in the sky");
+            (void)snprintf(what, sizeof what, "furnace of a %s block %s", materials[i].name,
+                           closed ? "among shining walls" : "in the sky");
             expect_within(what, sum, radiance, 2 * WITHIN);
             assert_true(fabs(sum - radiance) < 6 * sqrt(stated) + EXACT);
             reference_free(&f);
@@ -664,7 +717,8 @@ static void pixels_are_means_under_their_filter(void **state) {
             if (tent)
                 wanted[i] = 1 + 3 * (tented - (i % SIDE == 0 ? 0.125 : 0)) * (first ? 0.875 : 1);
             const double error = sqrt(f.direct_variance[3 * i]);
-            if (!(fabs(f.direct[3 * i] - wanted[i]) < 8 * error + 2e-3)) /* strata in a row of pixels may err alike: no error is seen then */
+            if (!(fabs(f.direct[3 * i] - wanted[i]) <
+                  8 * error + 2e-3)) /* strata in a row of pixels may err alike: no error is seen then */
                 fail_msg("pixel %u: %g, wanted %g, standard error %g", i, f.direct[3 * i], wanted[i], error);
         }
         double sum = 0, all = 0;
@@ -695,6 +749,7 @@ int main(void) {
         cmocka_unit_test(a_pane_lets_a_lamp_through),
         cmocka_unit_test(a_lobe_reflects_by_its_formula),
         cmocka_unit_test(a_lobe_reflects_a_square),
+        cmocka_unit_test(limited_paths_are_the_others_cut_short),
         cmocka_unit_test(a_mirror_sends_a_lamp_s_light_on),
         cmocka_unit_test(a_slab_lets_the_sun_through),
         cmocka_unit_test(furnaces_stay_as_they_are),
