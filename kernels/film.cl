@@ -82,8 +82,8 @@ kernel void expose(global const vit_scene *scene, ROUND_PARAMETERS, global const
 #if VIT_WITH(ANTIALIAS)
 static inline li film_difference(lu a, lu b)
 {
-    li d = L_AS_INT(a) - L_AS_INT(b);
-    return max(d, -d);
+    li x = L_AS_INT(a), y = L_AS_INT(b);
+    return max(x, y) - min(x, y);
 }
 
 /* Greatest difference of a channel between two packed colours. */

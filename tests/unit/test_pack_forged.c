@@ -144,7 +144,6 @@
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
     X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu), im->scene->paths = im->scene->baked = 0,           \
       vit_pack_derive(im->scene, NULL))                                                                                        \
-    X(META, textures_effect_without_textures, "without a texture", im->scene->textures = 0)                                    \
     X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),                     \
       im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
