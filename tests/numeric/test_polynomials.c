@@ -34,7 +34,7 @@ static const char kernels[] =
     "MAP(map_srgb, y = srgb_curve(x); z = L_FROM_INT(to_steps(y, 255.0f)))\n"
     "MAP(map_albedo, lv3 a = l_decode_albedo(L_AS_UINT(x)); y = a.x + a.y * 2.0f + a.z * 4.0f; z = "
     "L_AS_FLOAT(l_encode_albedo(a)))\n"
-    "MAP(map_whole, li i = L_AS_INT(x); y = l_snorm16((i << 16) >> 16); z = L_FROM_INT(l_nearest(L_FROM_INT(i) * 0.25f)))\n"
+    "MAP(map_whole, li w = L_AS_INT(x); y = l_snorm16((w << 16) >> 16); z = L_FROM_INT(l_nearest(L_FROM_INT(w) * 0.25f)))\n"
     "kernel void map_normal(global const float *in, global float *out, global float *second)\n" /* 3 planes; 3 planes; codes */
     "{\n"
     "    size_t i = get_global_id(0) * VIT_LANES, n = get_global_size(0) * VIT_LANES;\n"
