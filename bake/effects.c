@@ -186,10 +186,8 @@ static const char *what_is_other(uint64_t effect) {
     return effect == VIT_BIT(SMOOTH) ? "triangles with normals of their own" : effect == VIT_BIT(SKY_IMAGE) ? "the sky" : "cut-out triangles";
 }
 
-/* Is the effect one that only acts where rays reach? AREA_LIGHTS acts wherever its light falls. */
 static bool is_settled(uint64_t effect) {
-    return effect & (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |
-                     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE));
+    return effect & EFFECTS_SETTLED;
 }
 
 static bool is_reached(uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached) {

@@ -13,6 +13,11 @@
      VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) |  \
      VIT_BIT(ANTIALIAS))
 
+/* Effects that only act where rays reach; AREA_LIGHTS acts wherever its light falls. */
+#define EFFECTS_SETTLED                                                                                                        \
+    (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |            \
+     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE))
+
 /* How and in which frames of the path rays reached something. */
 typedef struct effects_reached {
     uint32_t how;              /* VIT_REACHED_*, all frames together */

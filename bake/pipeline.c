@@ -296,14 +296,15 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
         status = bake_zones(p, c, out, why);
     point_sections(p, out);
     cut_frames(c, out);
-    in.reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *in.reached);
-    if (status == VIT_OK && !in.reached)
+    effects_reached *reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *reached);
+    in.reached = out->plan.scene.effects & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)) ? reached : NULL; /* else there is nothing to find out */
+    if (status == VIT_OK && !reached)
         status = out_of_memory(why);
     if (status == VIT_OK)
         status = bounds_measure(&in, why);
     if (status == VIT_OK)
-        effects_settle(&out->plan.scene, out->model, out->plan.materials, in.reached, &out->plan.effects);
-    free(in.reached);
+        effects_settle(&out->plan.scene, out->model, out->plan.materials, reached, &out->plan.effects);
+    free(reached);
     if (status == VIT_OK)
         status = pack_assemble(&out->sections, &out->bytes, &out->size, why);
     return status;
