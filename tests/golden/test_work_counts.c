@@ -378,7 +378,7 @@ static void bytes_are_sizes_times_counts(void **state) {
                          WORK(&c->s, estimate_list, evaluations) * 52);
     assert_int_equal(WORK(&c->s, photon_paths, bytes), pack_buffer_bytes(&c->p, "photons") +
                                                            c->scene->lights * sizeof(vit_light) +
-                                                           WORK(&c->s, photon_paths, surface_points) * (48 + 48 + 32));
+                                                           WORK(&c->s, photon_paths, surface_points) * (48 + 48 + 80));
     drop(c);
 }
 
