@@ -65,9 +65,9 @@ void effects_drop(vit_scene *c, uint64_t effects) {
 
 void effects_force(const scene *s, vit_scene *c, effects_decided *out) {
     const uint64_t planned = c->effects;
-    /* What may stand idle in a program: there is no data without which it could not be. */
-    const uint64_t idle = VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |
-                          VIT_BIT(GLASS) | VIT_BIT(AMBIENT) | (planned & VIT_BIT(PHOTONS) ? VIT_BIT(CAUSTICS) : 0);
+    /* What may stand idle in a program: it needs nothing that the pack may lack. */
+    const uint64_t needs_data = VIT_BIT(SKY_IMAGE) | (planned & VIT_BIT(PHOTONS) ? 0 : VIT_BIT(CAUSTICS));
+    const uint64_t idle = (EFFECTS_SETTLED & ~needs_data) | VIT_BIT(AMBIENT);
     if (s->effects_choice == EFFECTS_LISTED)
         effects_drop(c, EFFECTS_NAMED & ~s->effects);
     if (s->effects_choice != EFFECTS_AUTO) {
@@ -83,28 +83,15 @@ static bool is_positive(const float v[3]) {
     return v[0] > 0.0f || v[1] > 0.0f || v[2] > 0.0f;
 }
 
-/* Does the material call for the effect? */
-static bool calls(uint64_t effect, const vit_material *m) {
-    switch (effect) {
-    case VIT_BIT(TEXTURES):
-        return m->texture != VIT_NONE;
-    case VIT_BIT(CUTOUT):
-        return m->cutout;
-    case VIT_BIT(EMISSION):
-        return is_positive(m->emission);
-    case VIT_BIT(GLOSS):
-        return m->kind == VIT_MATTE && is_positive(m->specular);
-    case VIT_BIT(MIRROR):
-        return m->kind == VIT_MIRROR;
-    case VIT_BIT(GLASS):
-        return m->kind == VIT_GLASS || m->kind == VIT_THIN_GLASS;
-    case VIT_BIT(CAUSTICS):
-        return m->kind != VIT_MATTE;
-    case VIT_BIT(AREA_LIGHTS):
-        return m->lights != 0 && is_positive(m->emission);
-    default:
-        return false;
-    }
+uint64_t effects_of_material(const vit_material *m) {
+    uint64_t e = m->texture != VIT_NONE ? VIT_BIT(TEXTURES) : 0;
+    if (m->cutout)
+        e |= VIT_BIT(CUTOUT);
+    if (is_positive(m->emission))
+        e |= VIT_BIT(EMISSION) | (m->lights ? VIT_BIT(AREA_LIGHTS) : 0);
+    if (m->kind == VIT_MATTE)
+        return e | (is_positive(m->specular) ? VIT_BIT(GLOSS) : 0);
+    return e | VIT_BIT(CAUSTICS) | (m->kind == VIT_MIRROR ? VIT_BIT(MIRROR) : VIT_BIT(GLASS));
 }
 
 /* Rays that an effect is for. */
@@ -152,7 +139,7 @@ static int say_materials(sentence *s, uint64_t effect, const model *m, const vit
     int count = 0;
     for (int i = 0; i < m->material_count; i++) {
         const bool is_reached = reached[i].how & ways(effect);
-        if (m->materials[i].triangles == 0 || !calls(effect, &materials[i]) || is_reached != which)
+        if (m->materials[i].triangles == 0 || !(effects_of_material(&materials[i]) & effect) || is_reached != which)
             continue;
         if (count++ >= TOLD)
             continue;
@@ -168,18 +155,9 @@ static int say_materials(sentence *s, uint64_t effect, const model *m, const vit
     return count;
 }
 
-/* What the effect acts on that is no material: its record, or NULL. */
-static const effects_reached *other(uint64_t effect, const effects_reached *reached, uint32_t materials) {
-    switch (effect) {
-    case VIT_BIT(SMOOTH):
-        return &reached[materials];
-    case VIT_BIT(SKY_IMAGE):
-        return &reached[materials + 1];
-    case VIT_BIT(CUTOUT):
-        return &reached[materials + 2];
-    default:
-        return NULL;
-    }
+/* The record of what the effect acts on that is no material; -1: it acts on materials. */
+static int other(uint64_t effect, int materials) {
+    return effect == VIT_BIT(SMOOTH) ? materials : effect == VIT_BIT(SKY_IMAGE) ? materials + 1 : effect == VIT_BIT(CUTOUT) ? materials + 2 : -1;
 }
 
 static const char *what_is_other(uint64_t effect) {
@@ -191,11 +169,11 @@ static bool is_settled(uint64_t effect) {
 }
 
 static bool is_reached(uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached) {
-    const effects_reached *o = other(effect, reached, (uint32_t)m->material_count);
-    if (o)
-        return o->how & ways(effect);
+    const int o = other(effect, m->material_count);
+    if (o >= 0)
+        return reached[o].how & ways(effect);
     for (int i = 0; i < m->material_count; i++)
-        if (m->materials[i].triangles > 0 && calls(effect, &materials[i]) && (reached[i].how & ways(effect)))
+        if (m->materials[i].triangles > 0 && (effects_of_material(&materials[i]) & effect) && (reached[i].how & ways(effect)))
             return true;
     return false;
 }
@@ -205,7 +183,7 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
     const uint64_t effect = (uint64_t)1 << bit;
     const bool forced_on = out->forced_on & effect, forced_off = out->forced_off & effect;
     const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, m, materials, reached);
-    const effects_reached *o = other(effect, reached, (uint32_t)m->material_count);
+    const int o = other(effect, m->material_count);
     sentence s = {.text = out->reason[bit]};
     if (forced_off)
         say(&s, "forced off: ");
@@ -220,9 +198,9 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
         sentence of = {.text = names};
         if (say_materials(&of, effect, m, materials, reached, false, c->frames) > 0)
             say(&s, ": %s", names);
-    } else if (is_settled(effect) && acts && o) {
+    } else if (is_settled(effect) && acts && o >= 0) {
         say(&s, "%s, ", what_is_other(effect));
-        say_frames(&s, o, ways(effect), c->frames);
+        say_frames(&s, &reached[o], ways(effect), c->frames);
     } else if (!((effect == VIT_BIT(AREA_LIGHTS) || (is_settled(effect) && acts)) &&
                  say_materials(&s, effect, m, materials, reached, true, c->frames) > 0))
         say(&s, "%s", forced_on && is_settled(effect) ? "nothing on the path calls for it" : table[bit].when);

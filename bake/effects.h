@@ -7,16 +7,12 @@
 #include "model.h"
 #include "vitrine_pack.h"
 
-/* Effects that a scene's `effects` may name, force on and force off: those of surfaces, the sky and pixels. */
-#define EFFECTS_NAMED                                                                                                          \
-    (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |            \
-     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) |  \
-     VIT_BIT(ANTIALIAS))
-
 /* Effects that only act where rays reach; AREA_LIGHTS acts wherever its light falls. */
 #define EFFECTS_SETTLED                                                                                                        \
     (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) |            \
      VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE))
+/* Effects that a scene's `effects` may name, force on and force off: those of surfaces, the sky and pixels. */
+#define EFFECTS_NAMED (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS))
 
 /* How and in which frames of the path rays reached something. */
 typedef struct effects_reached {
@@ -47,6 +43,9 @@ void effects_settle(vit_scene *c, const model *m, const vit_material *materials,
 
 /* Takes effects, those that need them and the counts that go with them out of META. */
 void effects_drop(vit_scene *c, uint64_t effects);
+
+/* What a material calls for where it is met: also CAUSTICS, which needs photons, and AREA_LIGHTS. */
+uint64_t effects_of_material(const vit_material *m);
 
 /* Name of the effect of a bit. */
 const char *effects_name(int bit);

@@ -1,3 +1,4 @@
+#include "image_file.h"
 #include "importer.h"
 #include <stb/stb_image.h>
 #include <ctype.h>
@@ -6,7 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_EDGE = 16384, MAX_BYTES = 1 << 30 };
+enum { MAX_EDGE = 16384 };
 /* Texels that a byte of an image file can stand for: deflate's 1032 to 1, a bit a texel. A file that claims more is cut short,
  * and the decoder would fill gigabytes for it. */
 #define TEXELS_A_BYTE (8 * 1032)
@@ -21,7 +22,7 @@ bool import_without(importer *im, const char *material, const char *name, const 
 
 static bool is_file(const char *path) {
     struct stat st;
-    return stat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_size <= MAX_BYTES;
+    return stat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_size <= IMAGE_FILE_MOST;
 }
 
 static int hex(char c) {
@@ -65,23 +66,6 @@ static bool resolve(const importer *im, const char *name, char path[SCENE_PATH])
     return false;
 }
 
-/* The whole file; NULL if it cannot be had. */
-static uint8_t *read_bytes(const char *path, int *size) {
-    FILE *file = fopen(path, "rb");
-    uint8_t *bytes = NULL;
-    long end = -1;
-    if (file && fseek(file, 0, SEEK_END) == 0 && (end = ftell(file)) > 0 && end <= MAX_BYTES && fseek(file, 0, SEEK_SET) == 0)
-        bytes = malloc((size_t)end);
-    if (bytes && fread(bytes, 1, (size_t)end, file) != (size_t)end) {
-        free(bytes);
-        bytes = NULL;
-    }
-    if (file)
-        (void)fclose(file);
-    *size = (int)end;
-    return bytes;
-}
-
 static const char *decode(const uint8_t *bytes, int size, model_image *out) {
     int channels;
     if (!stbi_info_from_memory(bytes, size, &out->width, &out->height, &channels) || stbi_is_hdr_from_memory(bytes, size))
@@ -97,7 +81,7 @@ static const char *decode(const uint8_t *bytes, int size, model_image *out) {
 /* Assimp keeps embedded images as their file's bytes (height 0) or as BGRA texels. */
 static const char *decode_embedded(const struct aiTexture *t, model_image *out) {
     if (t->mHeight == 0)
-        return t->mWidth > 0 && t->mWidth <= MAX_BYTES ? decode((const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
+        return t->mWidth > 0 && t->mWidth <= IMAGE_FILE_MOST ? decode((const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
     if (t->mWidth < 1 || t->mWidth > MAX_EDGE || t->mHeight > MAX_EDGE)
         return "is larger than 16384 pixels";
     const size_t texels = (size_t)t->mWidth * t->mHeight;
@@ -133,7 +117,7 @@ static const char *load(const importer *im, int embedded, model_image *out) {
     if (embedded >= 0)
         return decode_embedded(im->ai->mTextures[embedded], out);
     int size;
-    uint8_t *bytes = read_bytes(out->name, &size);
+    uint8_t *bytes = image_file_read(out->name, &size);
     const char *wrong = bytes ? decode(bytes, size, out) : "cannot be read";
     free(bytes);
     return wrong;

@@ -111,25 +111,11 @@ static uint64_t effects_of_lights(const scene *s, const tracks *t) {
 
 static uint64_t effects_of_materials(const scene *s, const model *m, const plan *p) {
     static const uint64_t filters[] = {[FILTER_NEAREST] = VIT_BIT(NEAREST), [FILTER_TRILINEAR] = VIT_BIT(TRILINEAR)};
-    uint64_t e = 0, filter = filters[s->quality.texture_filter];
-    for (int i = 0; i < m->material_count; i++) {
-        const vit_material *v = &p->materials[i];
-        if (m->materials[i].triangles == 0)
-            continue;
-        if (v->texture != VIT_NONE)
-            e |= VIT_BIT(TEXTURES) | filter;
-        if (v->cutout)
-            e |= VIT_BIT(CUTOUT);
-        if (is_positive(v->emission))
-            e |= VIT_BIT(EMISSION);
-        if (v->kind == VIT_MATTE && is_positive(v->specular))
-            e |= VIT_BIT(GLOSS);
-        if (v->kind == VIT_MIRROR)
-            e |= VIT_BIT(MIRROR);
-        if (v->kind == VIT_GLASS || v->kind == VIT_THIN_GLASS)
-            e |= VIT_BIT(GLASS);
-    }
-    return e;
+    uint64_t e = 0;
+    for (int i = 0; i < m->material_count; i++)
+        if (m->materials[i].triangles > 0)
+            e |= effects_of_material(&p->materials[i]) & ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
+    return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
 }
 
 static uint64_t effects_of_quality(const scene *s, const plan *p) {

@@ -3,6 +3,7 @@
  * solid angle, goes to the texel that it lies in; so none is lost, however small and bright. Directions are chosen by
  * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "sky.h"
+#include "image_file.h"
 #include "sobol.h"
 #include <math.h>
 #include <stb/stb_image.h>
@@ -12,7 +13,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979324
-#define MAX_BYTES (1L << 30)
 #define MAX_TEXELS (1u << 25) /* of the picture: 384 MiB as floats */
 #define LEAST_SIZE 16u
 #define MOST_SIZE 1024u
@@ -245,22 +245,6 @@ vit_status sky_from_texels(const float *rgb, int width, int height, double rotat
 
 /* ---- files ---- */
 
-static uint8_t *read_bytes(const char *path, int *size) {
-    FILE *file = fopen(path, "rb");
-    uint8_t *bytes = NULL;
-    long end = -1;
-    if (file && fseek(file, 0, SEEK_END) == 0 && (end = ftell(file)) > 0 && end <= MAX_BYTES && fseek(file, 0, SEEK_SET) == 0)
-        bytes = malloc((size_t)end);
-    if (bytes && fread(bytes, 1, (size_t)end, file) != (size_t)end) {
-        free(bytes);
-        bytes = NULL;
-    }
-    if (file)
-        (void)fclose(file);
-    *size = (int)end;
-    return bytes;
-}
-
 /* The picture, linear and scaled. What is wrong with it, or NULL. */
 static const char *decode(const uint8_t *bytes, int size, double scale, int *width, int *height, float **rgb) {
     int channels;
@@ -297,7 +281,7 @@ static const char *decode(const uint8_t *bytes, int size, double scale, int *wid
 vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit_text *why) {
     int size, width = 0, height = 0;
     float *rgb = NULL;
-    uint8_t *bytes = read_bytes(file, &size);
+    uint8_t *bytes = image_file_read(file, &size);
     const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : "cannot be read";
     vit_status status = VIT_BAD_INPUT;
     *out = (sky){0};

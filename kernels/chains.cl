@@ -28,8 +28,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     lf t = L_LOAD(hit_distance + first), length = L_F(0);
     lv3 o = lv3_load(camera->eye), d = l_camera_ray(scene, camera, round / layers, x, y), weight = lv3_set(L_F(1), L_F(1), L_F(1));
     li going = chain_goes_on(attributes, materials, round_active(scene, first, x, y, active) & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
-    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2];
-    lf cone = L_F(vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx))));
+    lf cone = L_F(camera_cone(camera));
     WORK_BEGIN
     for (uint i = 0; i < scene->chain && l_any(going); i++) {
         WORK_LANES(surface_points, going);
@@ -47,10 +46,9 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             lf part = l_sel(forks, l_sel(mirrored, p.mirror, 1.0f - p.mirror), L_F(1));
             li through = glass & ~mirrored;
             splits |= forks;
-            lv3 lost = lv3_set(shine_absorbed(s.shine.absorption.x, t), shine_absorbed(s.shine.absorption.y, t), shine_absorbed(s.shine.absorption.z, t));
-            weight = lv3_sel(inside, lv3_set(weight.x * lost.x, weight.y * lost.y, weight.z * lost.z), weight);
+            weight = lv3_sel(inside, shine_left(weight, s.shine.absorption, t), weight);
             weight = lv3_scale(weight, l_sel(glass, part, L_F(1)));
-            next = lv3_sel(through, p.refracted, l_any(glass) ? lv3_sel(glass, p.mirrored, next) : next);
+            next = lv3_sel(through, p.refracted, lv3_sel(glass, p.mirrored, next));
             from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
             tint = lv3_sel(glass & mirrored, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
         }

@@ -86,6 +86,7 @@ static inline void lit_store(global const vit_scene *scene, const lit_sample *s,
 #define LIT_PARAMETERS                                                                                                           \
     global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,         \
         global const float *rays, global const uint *gloss, global float *direct
+#define LIT hit_triangle, position, normal, albedo, rays, gloss, direct
 
 /* Way to a light of a place: unit direction, distance, irradiance a unit of its power. *to: the way, not a direction's. */
 static inline lv3 lit_way(global const vit_scene *scene, global const vit_light *light, const lit_sample *s, lv3 *to, lf *d, lf *e)
@@ -195,9 +196,12 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
 }
 #endif
 
-/* Light of the points `set` of the fixed sets: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and each copy another again. */
-static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global const vit_emitter *emitters, uint points, int sky, uint first, uint copy WORK_PASSED)
+/* Adds the light of one of the fixed sets of points: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and each copy another again. */
+static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first, li hit,
+                                   LIT_PARAMETERS WORK_PASSED)
 {
+    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    uint copy = round / layers;
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
@@ -206,27 +210,28 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, lit_sample *s, global c
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
         lf d = L_F(3e38f), e;
         if (sky)
-            e = l_max(lv3_dot(s->n, l), L_F(0));
+            e = l_max(lv3_dot(s.n, l), L_F(0));
         else {
             /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a sphere of it.
              * The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
             lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
-            to = lv3_sub(to, s->p);
+            to = lv3_sub(to, s.p);
             lf d2 = l_max(lv3_dot(to, to), L_F(least2));
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
-            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
+            e = l_div(l_max(lv3_dot(s.n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
         }
-        li lit = s->hit & L_GT(e, L_F(0));
+        li lit = s.hit & L_GT(e, L_F(0));
         if (!l_any(lit))
             continue;
-        ray_packet r = ray_make(s->p, l);
+        ray_packet r = ray_make(s.p, l);
         WORK_LANES(shadow_rays, lit);
         lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
         WORK_TRACED(r);
         lv3 power = lv3_set(L_GATHER(lf, p + 8, at), L_GATHER(lf, p + 9, at), L_GATHER(lf, p + 10, at));
-        lit_add(s, l, l_sel(lit, e, L_F(0)), power);
+        lit_add(&s, l, l_sel(lit, e, L_F(0)), power);
     }
+    lit_store(scene, &s, first, albedo, gloss, direct);
 }
 
 #if VIT_WITH(AREA_LIGHTS)
@@ -238,10 +243,8 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
     WORK_BEGIN
-    lit_by_emitters(RAY_SCENE, &s, emitters, scene->area_samples, 0, first, round / layers WORK_PASS);
-    lit_store(scene, &s, first, albedo, gloss, direct);
+    lit_by_emitters(RAY_SCENE, ROUND, emitters, scene->area_samples, 0, first, hit, LIT WORK_PASS);
     WORK_END
 }
 #endif
@@ -255,10 +258,8 @@ kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_e
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
     WORK_BEGIN
-    lit_by_emitters(RAY_SCENE, &s, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, round / layers WORK_PASS);
-    lit_store(scene, &s, first, albedo, gloss, direct);
+    lit_by_emitters(RAY_SCENE, ROUND, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, hit, LIT WORK_PASS);
     WORK_END
 }
 #endif

@@ -177,8 +177,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
                 li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
                 shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
                 li through = glass & L_GE(u, p.mirror);
-                lv3 lost = lv3_set(shine_absorbed(s.shine.absorption.x, t), shine_absorbed(s.shine.absorption.y, t), shine_absorbed(s.shine.absorption.z, t));
-                power = lv3_sel(inside, lv3_set(power.x * lost.x, power.y * lost.y, power.z * lost.z), power);
+                power = lv3_sel(inside, shine_left(power, s.shine.absorption, t), power);
                 on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
                 from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
                 tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);

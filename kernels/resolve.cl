@@ -131,8 +131,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
     if (VIT_EFFECT_FILM) {
         c = lv3_load_planes(film, n, first);
         if (VIT_EFFECT_ANTIALIAS) {
-            li all = -((L_I((int)(edges[first >> 4] >> (first & 15u))) >> L_INDEX) & 1);
-            c = lv3_scale(c, l_sel(all, L_F(vit_div(1.0f, (float)scene->copies)), L_F(1)));
+            c = lv3_scale(c, l_sel(block_bits(edges, first), L_F(vit_div(1.0f, (float)scene->copies)), L_F(1)));
         }
     } else
         c = sample_radiance(n, first, albedo, direct, indirect, gloss, rays);

@@ -8,6 +8,8 @@ const vit_pass vit_passes[] = {VIT_PASSES(X)};
 #undef X
 #undef B
 #undef V
+_Static_assert(B_COUNT <= VIT_MAX_BUFFERS && B_COUNT <= 64, "vitrine.h has room for every buffer, and vit_pass.writes a bit");
+_Static_assert(sizeof vit_passes / sizeof vit_passes[0] <= VIT_MAX_PASSES, "vitrine.h has room for every pass");
 const uint32_t vit_pass_count = sizeof vit_passes / sizeof vit_passes[0];
 
 #define X(name, when, section, bytes) #name,
