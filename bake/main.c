@@ -1,4 +1,5 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
+#include "cost/adds.h"
 #include "cost/fit_pack.h"
 #include "options.h"
 #include "pipeline.h"
@@ -49,6 +50,23 @@ static vit_status make_pack(bake *b, vit_text *why) {
     return pipeline_pack(p, &choice, &b->packed, why);
 }
 
+/* A line each: name, what it adds, why. */
+static void explain_effects(const pipeline_packed *p, const adds *all) {
+    printf("effects %24s %16s   of %llu bytes and %llu work units a frame\n", "bytes", "work units", (unsigned long long)all->device_bytes,
+           (unsigned long long)all->work);
+    for (int bit = 0; bit < 64; bit++) {
+        const adds_of *a = &all->effect[bit];
+        if (!effects_name(bit))
+            continue;
+        printf("  %-15s ", effects_name(bit));
+        if (a->found)
+            printf("%+14lld %+16lld", (long long)a->bytes, (long long)a->work);
+        else
+            printf("%14s %16s", "-", "-");
+        printf("   %s\n", p->plan.effects.reason[bit]);
+    }
+}
+
 static vit_status explain(const bake *b, vit_text *why) {
     const pipeline *p = &b->pipeline;
     const vit_scene *s = &b->packed.plan.scene;
@@ -57,10 +75,11 @@ static vit_status explain(const bake *b, vit_text *why) {
     vit_status status = vit_require(&info, &need, why);
     if (status != VIT_OK)
         return status;
-    printf("effects\n");
-    for (int bit = 0; bit < 64; bit++)
-        if (effects_name(bit))
-            printf("  %-15s %s\n", effects_name(bit), b->packed.plan.effects.reason[bit]);
+    adds all;
+    status = adds_measure(&b->packed, p->threads, &all, why);
+    if (status != VIT_OK)
+        return status;
+    explain_effects(&b->packed, &all);
     printf("\nscene\n  %u x %u, %u frames at %g a second\n", s->width, s->height, s->frames, (double)s->fps);
     printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n", s->triangles,
            (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite, (unsigned long long)b->packed.model->not_triangles, s->nodes,

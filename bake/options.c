@@ -1,4 +1,5 @@
 #include "options.h"
+#include "effects.h"
 #include "fields.h"
 #include <limits.h>
 #include <math.h>
@@ -42,6 +43,32 @@ static bool budget_of(const char *text, double *out) {
     return text && *text >= '0' && *text <= '9' && *end == 0 && *out > 0 && *out < 1e18;
 }
 
+static bool fraction_of(const char *text, double *out) {
+    char *end;
+    *out = text ? strtod(text, &end) : 0;
+    return text && *text && *end == 0 && *out >= 0 && *out <= 1;
+}
+
+static bool effects_of(const char *text, options *o) {
+    o->effects_given = true;
+    o->effects = 0;
+    o->effects_choice = fields_place(SCENE_EFFECTS, text ? text : "");
+    if (o->effects_choice >= 0)
+        return true;
+    o->effects_choice = EFFECTS_LISTED;
+    if (!text || strcmp(text, "none") == 0)
+        return text != NULL;
+    for (size_t length; *text; text += length + (text[length] == ',')) {
+        char name[32];
+        length = strcspn(text, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), text);
+        if (!(effects_named(name) & EFFECTS_NAMED))
+            return false;
+        o->effects |= effects_named(name);
+    }
+    return o->effects != 0;
+}
+
 static bool one_of(const char *text, const char *a, const char *b, const char **out) {
     *out = text;
     return text && (strcmp(text, a) == 0 || strcmp(text, b) == 0);
@@ -68,7 +95,8 @@ static bool among(const char *name, const char *value, options *o, bool *known, 
     } lists[] = {{"--indirect-samples", SCENE_INDIRECT_SAMPLES, "1, 4 or 16", &o->indirect_samples},
                  {"--vertex-bits", SCENE_VERTEX_BITS, "32 or 16", &o->vertex_bits},
                  {"--normal-bits", SCENE_NORMAL_BITS, "16 or 8", &o->normal_bits},
-                 {"--sample-bits", SCENE_SAMPLE_BITS, "32 or 16", &o->sample_bits}};
+                 {"--sample-bits", SCENE_SAMPLE_BITS, "32 or 16", &o->sample_bits},
+                 {"--antialias", SCENE_ANTIALIAS, "1, 2, 4, 8 or 16", &o->antialias}};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++)
         if (strcmp(name, lists[i].name) == 0) {
             *known = true;
@@ -96,7 +124,11 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
                    {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"},
                    {"--zones", &o->zones, 0, 2, "0, 1, or 2 to part unlike lit surfaces too"},
                    {"--effective-area", &o->effective_area, 0, 1, "0 or 1"},
-                   {"--bounce-sequence", &o->bounce_sequence, 0, 1, "0 or 1"}};
+                   {"--bounce-sequence", &o->bounce_sequence, 0, 1, "0 or 1"},
+                   {"--light-samples", &o->light_samples, 1, 1024, "1 to 1024"},
+                   {"--sky-samples", &o->sky_samples, 1, 1024, "1 to 1024"},
+                   {"--specular-depth", &o->specular_depth, 1, 32, "1 to 32"},
+                   {"--caustics", &o->caustics, 0, 1, "0 or 1"}};
     long n = 0;
     *known = true;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
@@ -133,13 +165,20 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         return *wants = "interpolated or raw", one_of(value, "interpolated", "raw", &o->smoothing);
     if (strcmp(name, "--kernel") == 0)
         return *wants = "sphere or flattened", one_of(value, "sphere", "flattened", &o->kernel);
+    if (strcmp(name, "--antialias-filter") == 0)
+        return *wants = "box or tent", one_of(value, "box", "tent", &o->antialias_filter);
+    if (strcmp(name, "--antialias-contrast") == 0)
+        return *wants = "0 to 1", fraction_of(value, &o->antialias_contrast);
+    if (strcmp(name, "--effects") == 0)
+        return *wants = "auto, all, none, or names with commas between (bake/README.md lists them)", effects_of(value, o);
     if (strcmp(name, "--texture-filter") == 0)
         return *wants = "nearest, bilinear or trilinear", o->texture_filter = value, fields_place(SCENE_FILTERS, value) >= 0;
     return among(name, value, o, known, wants);
 }
 
 vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
-    *out = (options){.photons = -1, .normal_keys = -1, .zones = -1, .effective_area = -1, .bounce_sequence = -1};
+    *out = (options){.photons = -1, .normal_keys = -1, .zones = -1, .effective_area = -1, .bounce_sequence = -1,
+                     .caustics = -1, .antialias_contrast = -1};
     for (int i = 1; i < argc; i++) {
         const char *wants = "";
         bool known;
@@ -192,6 +231,17 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     q->normal_bits = o->normal_bits ? o->normal_bits : q->normal_bits;
     q->sample_bits = o->sample_bits ? o->sample_bits : q->sample_bits;
     q->texture_filter = o->texture_filter ? fields_place(SCENE_FILTERS, o->texture_filter) : q->texture_filter;
+    q->antialias = o->antialias ? o->antialias : q->antialias;
+    q->antialias_contrast = o->antialias_contrast >= 0 ? o->antialias_contrast : q->antialias_contrast;
+    q->tent = o->antialias_filter ? strcmp(o->antialias_filter, "tent") == 0 : q->tent;
+    q->light_samples = o->light_samples ? o->light_samples : q->light_samples;
+    q->sky_samples = o->sky_samples ? o->sky_samples : q->sky_samples;
+    q->specular_depth = o->specular_depth ? o->specular_depth : q->specular_depth;
+    q->caustics = o->caustics >= 0 ? o->caustics != 0 : q->caustics;
+    if (o->effects_given) {
+        s->effects_choice = o->effects_choice;
+        s->effects = o->effects;
+    }
     if (q->tile != 8 && q->tile != 16 && q->tile != 32 && q->tile != 64)
         return usage(why, "--tile", "8, 16, 32 or 64");
     return VIT_OK;
@@ -206,7 +256,7 @@ void options_help(void) {
          "  vitrine-bake scene.cfg --fit 33 -o s.vit   the best quality that plays at 30 frames a second here\n"
          "\n"
          "  -o, --output FILE     the pack; written under another name first, so there is never half a pack\n"
-         "  --explain             effects, bounds, buffers; with -o the pack is written too\n"
+         "  --explain             effects with what each adds in bytes and work, bounds, buffers; with -o the pack is written too\n"
          "  --strict              a missing texture is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
          "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
@@ -222,7 +272,9 @@ void options_help(void) {
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
          "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
          "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
-         "  --vertex-bits 32|16  --normal-bits 16|8  --sample-bits 32|16\n"
+         "  --vertex-bits 32|16  --normal-bits 16|8  --sample-bits 32|16  --light-samples N  --sky-samples N\n"
+         "  --antialias 1|2|4|8|16  --antialias-contrast 0..1  --antialias-filter box|tent  --specular-depth N  --caustics 0|1\n"
+         "  --effects auto|all|none|NAME,NAME...   of mirror, glass, antialias and so on; the rest is left out\n"
          "\n"
          "Exit codes:");
 #define X(name, value, meaning) printf("  %d  %s\n", value, meaning);

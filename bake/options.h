@@ -11,13 +11,18 @@ typedef struct options {
     uint32_t device;
     bool device_given;         /* else the default */
     /* Overrides of the scene file; 0, NULL or negative: none. */
-    int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits;
+    int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits, antialias,
+        light_samples, sky_samples, specular_depth;
     double radius;             /* 0 with radius_given: auto */
     bool radius_given;
     double fit;                /* milliseconds a frame, 0: none */
     double fit_work;           /* work units a frame, a whole number, 0: none */
-    const char *estimate, *smoothing, *kernel, *texture_filter;
-    int normal_keys, zones, effective_area, bounce_sequence; /* -1: as the scene says; zones: 2 with light_zones */
+    const char *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
+    int normal_keys, zones, effective_area, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
+    double antialias_contrast; /* -1: as the scene says */
+    bool effects_given;
+    int effects_choice;        /* as in `scene` */
+    uint64_t effects;
 } options;
 
 /* VIT_USAGE: why->text names the option. */

@@ -103,7 +103,8 @@ typedef struct scene_quality {
 } scene_quality;
 
 /* What `effects` of a scene file says. */
-enum { EFFECTS_AUTO, EFFECTS_LISTED, EFFECTS_ALL };
+enum { EFFECTS_AUTO, EFFECTS_ALL, EFFECTS_LISTED };
+#define SCENE_EFFECTS "auto|all" /* in this order */
 
 typedef struct scene {
     char path[SCENE_PATH];     /* the scene file; or the mesh, if there was no scene file */

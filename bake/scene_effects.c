@@ -25,9 +25,9 @@ bool reader_effects(reader *r, const config_setting_t *root) {
         return true;
     reader_at(r, "", -1);
     const char *word = config_setting_get_string(setting);
-    const int choice = word ? fields_place("auto|all", word) : -1;
+    const int choice = word ? fields_place(SCENE_EFFECTS, word) : -1;
     if (choice >= 0) {
-        r->s->effects_choice = choice == 0 ? EFFECTS_AUTO : EFFECTS_ALL;
+        r->s->effects_choice = choice;
         return true;
     }
     if (word || !(config_setting_is_array(setting) || config_setting_is_list(setting)))

@@ -1,7 +1,7 @@
 /* Pass 2 with mirrors or glass: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
  * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel part as
  * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. A chain
- * that does not end on a matt surface or in the sky is black. */
+ * that has not ended by then ends in the sky: light that is caught in glass loses nothing under an even sky. */
 #if VIT_WITH(CHAINS)
 /* Lanes whose triangle's material is a mirror or glass. */
 static inline li chain_goes_on(global const vit_attributes *attributes, global const vit_material *materials, li hit, li triangle)
@@ -9,7 +9,7 @@ static inline li chain_goes_on(global const vit_attributes *attributes, global c
     li r = L_I(0), own;
     while (l_any(hit)) {
         uint word = attributes[surface_next(&hit, triangle, &own)].material;
-        if (materials[word & VIT_MATERIAL_INDEX].kind != VIT_MATTE)
+        if (VIT_KIND_WITH(materials[word & VIT_MATERIAL_INDEX].kind, VIT_EFFECT_MIRROR, VIT_EFFECT_GLASS) != VIT_MATTE)
             r |= own;
     }
     return r;
@@ -66,9 +66,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         triangle = l_sel_i(going, found, triangle);
         going = chain_goes_on(attributes, materials, going & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
     }
-    /* What still goes on is black, and hits nothing. */
-    triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle);
-    weight = lv3_sel(going, lv3_set(L_F(0), L_F(0), L_F(0)), weight);
+    triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle); /* what still goes on */
     L_STORE(L_AS_UINT(triangle), hit_triangle + first);
     L_STORE(t, hit_distance + first);
     lv3_store_planes(o, rays, n, first);

@@ -31,10 +31,10 @@ static uint64_t pass_units(const uint64_t work[VIT_MAX_WORKS], const char *const
     return units > 0 ? units : bytes;
 }
 
-uint64_t fit_work_units(const cost_setting *s, const char *const *names, uint32_t count) {
+uint64_t fit_work_units(const uint64_t work[][VIT_MAX_WORKS], uint32_t passes, const char *const *names, uint32_t count) {
     uint64_t units = 0;
-    for (uint32_t p = 0; p < s->pass_count; p++)
-        units += pass_units(s->pass_work[p], names, count);
+    for (uint32_t p = 0; p < passes; p++)
+        units += pass_units(work[p], names, count);
     return units;
 }
 

@@ -63,7 +63,7 @@ static void note_work(cost_results *r, cost_setting *c, const vit_statistics *t)
     for (uint32_t p = 0; p < t->pass_count; p++)
         (void)snprintf(c->pass_names[p], sizeof c->pass_names[p], "%s", t->pass_names[p]);
     memcpy(c->pass_work, t->pass_work, sizeof c->pass_work);
-    c->work = fit_work_units(c, t->work_names, t->work_count);
+    c->work = fit_work_units(t->pass_work, t->pass_count, t->work_names, t->work_count);
 }
 
 /* What must have the default's bits has them. */

@@ -2,10 +2,10 @@
  * with the effect and with the pack's effects less it, on a scene that calls for it. A room, open at the front, with three balls. */
 #include "measure.h"
 
+#include "cost/adds.h"
 #include "cost/images.h"
 #include "cost/metrics.h"
 #include "cost/reference.h"
-#include "effects.h"
 #include "pipeline.h"
 
 enum { WIDTH = 320, HEIGHT = 240, EVERY = 4, ROUNDS = 9, STEPS = 20 };
@@ -107,30 +107,6 @@ static void write_scene(size_t i) {
             bench_fail("%s: %s", rows[i].name, why.text);                                                                      \
     } while (0)
 
-/* The pack's bytes with these effects dropped; free() them. */
-static void *without(const pipeline_packed *p, uint64_t effect, size_t *size) {
-    pack_sections sections = p->sections;
-    vit_scene s = p->plan.scene;
-    vit_text why = {""};
-    void *bytes = NULL;
-    effects_drop(&s, effect);
-    if (effect == VIT_BIT(DIRECTIONAL)) /* the scene's only light */
-        effects_drop(&s, VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS));
-    if (!(s.effects & VIT_BIT(AREA_LIGHTS)) && p->plan.scene.area_samples > 0)
-        sections.data[VIT_SECTION_EMIT] = (const vit_emitter *)sections.data[VIT_SECTION_EMIT] + VIT_PATTERNS * p->plan.scene.area_samples;
-    if (effect & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))) /* nor their photons */
-        effects_drop(&s, VIT_BIT(PHOTONS));
-    if (!(s.effects & VIT_BIT(LIGHTS)))
-        s.lights = 0;
-    if (!(s.effects & VIT_BIT(PHOTONS)))
-        s.paths = s.baked = 0;
-    sections.data[VIT_SECTION_META] = &s;
-    sections.data[VIT_SECTION_GOLD] = p->gold;
-    if (vit_pack_derive(&s, &why) != VIT_OK || pack_assemble(&sections, &bytes, size, &why) != VIT_OK)
-        bench_fail("without: %s", why.text);
-    return bytes;
-}
-
 static float *render(const void *pack, size_t size, const images_grid *g, uint64_t *device_bytes) {
     vit_text why = {""};
     vit_requirements need;
@@ -200,8 +176,10 @@ static void run(csv *c, size_t i) {
     TRY(pipeline_pack(&p, &choice, &packed, &why));
     if (!(packed.plan.scene.effects & rows[i].effect))
         bench_fail("%s: its scene does not call for it: %s", rows[i].name, FOLDER "/scene.cfg");
+    const uint64_t dropped = rows[i].effect | (rows[i].effect & VIT_BIT(DIRECTIONAL) ? VIT_BIT(LIGHTS) : 0); /* the scene's only light */
     size_t less_size;
-    void *less = without(&packed, rows[i].effect, &less_size);
+    void *less = NULL;
+    TRY(adds_without(&packed.sections, dropped, &less, &less_size, &why));
     const images_grid grid = {WIDTH, HEIGHT, EVERY};
     reference truth;
     const reference_input in = {.sections = &packed.sections,

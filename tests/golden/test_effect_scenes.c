@@ -7,11 +7,13 @@
  * change. All on the device host, which compiles every effect into one program and reports from the runtime's tables. */
 #include "scene_lab.h"
 
+#include "cost/adds.h"
+#include "cost/fit.h"
 #include "effects.h"
 #include "open_pack.h"
 #include "pack_sections.h"
 
-enum { FRAMES = 3 };
+enum { FRAMES = ADDS_FRAMES };
 
 /* A floor, a back wall, the thing: a block on the floor, and a vault under the floor, closed, with a second thing in it. */
 static const char stage[] =
@@ -72,13 +74,13 @@ static void bake(scene_lab *l, const char *lights, const char *thing, const char
     f = scene_lab_create(l, "holes.tga");
     assert_int_equal(fwrite(holes, 1, sizeof holes, f), sizeof holes);
     (void)fclose(f);
-    unsigned char sky[HOLES_HEADER + 16 * 8 * 4]; /* twice as wide as high */
-    memcpy(sky, holes, HOLES_HEADER);
-    sky[12] = 16;
-    for (size_t i = HOLES_HEADER; i < sizeof sky; i++)
-        sky[i] = (unsigned char)(i * 7);
+    unsigned char picture[HOLES_HEADER + 16 * 8 * 4]; /* twice as wide as high */
+    memcpy(picture, holes, HOLES_HEADER);
+    picture[12] = 16;
+    for (size_t i = HOLES_HEADER; i < sizeof picture; i++)
+        picture[i] = (unsigned char)(i * 7);
     f = scene_lab_create(l, "sky.tga");
-    assert_int_equal(fwrite(sky, 1, sizeof sky, f), sizeof sky);
+    assert_int_equal(fwrite(picture, 1, sizeof picture, f), sizeof picture);
     (void)fclose(f);
     f = scene_lab_create(l, "stage.cfg");
     (void)fprintf(f,
@@ -95,25 +97,30 @@ static void *load(scene_lab *l, size_t *size) {
     return test_packs_load(scene_lab_path(l, "scene.vit"), size);
 }
 
-/* Did --explain say so of the effect? */
-static bool explained(scene_lab *l, uint64_t effect, const char *text) {
-    char line[EFFECTS_REASON + 64];
+/* What --explain said of the effect. */
+static const char *explanation(scene_lab *l, uint64_t effect) {
+    static char line[EFFECTS_REASON + 64];
     FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
-    bool said = false;
+    bool found = false;
     assert_non_null(f);
-    while (fgets(line, sizeof line, f)) {
+    while (!found && fgets(line, sizeof line, f)) {
         char name[32] = "";
         (void)sscanf(line, " %31s", name);
-        said |= effects_named(name) == effect && strstr(line, text) != NULL;
+        found = effects_named(name) == effect;
     }
     (void)fclose(f);
-    return said;
+    return found ? line : "";
+}
+
+static bool explained(scene_lab *l, uint64_t effect, const char *text) {
+    return strstr(explanation(l, effect), text) != NULL;
 }
 
 typedef struct played {
     uint64_t hash[FRAMES];
     vit_requirements need;
     vit_statistics stats; /* of the last frame, with work */
+    long long units;      /* work units a frame, mean */
 } played;
 
 static played play(const void *bytes, size_t size) {
@@ -123,10 +130,15 @@ static played play(const void *bytes, size_t size) {
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     pack_open_bytes(&p, copy, size, (vit_open_info){.device = VIT_DEVICE_HOST, .format = VIT_FORMAT_RGBA32F, .count_work = 1});
-    for (uint32_t i = 0; i < FRAMES; i++)
+    uint64_t units = 0;
+    for (uint32_t i = 0; i < FRAMES; i++) {
         r.hash[i] = pack_frame_hash(&p, i);
+        r.stats = pack_stats(&p);
+        const vit_statistics *s = &r.stats;
+        units += fit_work_units(s->pass_work, s->pass_count, s->work_names, s->work_count);
+    }
+    r.units = (long long)(units / FRAMES);
     r.need = p.need;
-    r.stats = pack_stats(&p);
     pack_close(&p);
     return r;
 }
@@ -134,7 +146,7 @@ static played play(const void *bytes, size_t size) {
 /* The pack with the effect in it and nothing for it to act on: data that the loader wants of such a pack are there and do nothing. */
 static played play_idle(const void *bytes, uint64_t effect) {
     static vit_emitter dark[2 * VIT_PATTERNS];
-    static vit_sky_texel sky[9];
+    static vit_sky_texel texels[9];
     pack_sections sections = pack_sections_of(bytes);
     vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
     vit_text why = {""};
@@ -156,7 +168,7 @@ static played play_idle(const void *bytes, uint64_t effect) {
             dark[i].position[1] = 4.0f;
     }
     for (int i = 0; i < 9; i++)
-        memcpy(sky[i].radiance, s.background, sizeof sky[i].radiance);
+        memcpy(texels[i].radiance, s.background, sizeof texels[i].radiance);
     if (effect == VIT_BIT(AREA_LIGHTS))
         s.area_samples = 2;
     if (effect == VIT_BIT(SKY_LIGHT))
@@ -165,7 +177,7 @@ static played play_idle(const void *bytes, uint64_t effect) {
         s.sky_size = 1;
     sections.data[VIT_SECTION_META] = &s;
     sections.data[VIT_SECTION_EMIT] = dark;
-    sections.data[VIT_SECTION_SKYT] = sky;
+    sections.data[VIT_SECTION_SKYT] = texels;
     if (pack_assemble(&sections, &idle, &size, &why) != VIT_OK)
         fail_msg("%s", why.text);
     const played r = play(idle, size);
@@ -174,21 +186,12 @@ static played play_idle(const void *bytes, uint64_t effect) {
 }
 
 static played play_without(const void *bytes, uint64_t effect) {
-    pack_sections sections = pack_sections_of(bytes);
-    vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
+    const pack_sections sections = pack_sections_of(bytes);
+    const uint64_t lamps = VIT_BIT(SPOT) | VIT_BIT(DIRECTIONAL) | VIT_BIT(RANGE); /* the scene's only light is such a one */
     vit_text why = {""};
     void *less = NULL;
     size_t size;
-    effects_drop(&s, effect);
-    if (effect == VIT_BIT(SPOT) || effect == VIT_BIT(DIRECTIONAL) || effect == VIT_BIT(RANGE))
-        effects_drop(&s, VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS)); /* the light itself is such a one */
-    if (!(s.effects & VIT_BIT(LIGHTS)))
-        s.lights = 0;
-    if (!(s.effects & VIT_BIT(PHOTONS)))
-        s.paths = s.baked = 0;
-    assert_int_equal(vit_pack_derive(&s, &why), VIT_OK);
-    sections.data[VIT_SECTION_META] = &s;
-    if (pack_assemble(&sections, &less, &size, &why) != VIT_OK)
+    if (adds_without(&sections, effect | (effect & lamps ? VIT_BIT(LIGHTS) : 0), &less, &size, &why) != VIT_OK)
         fail_msg("%s", why.text);
     const played r = play(less, size);
     free(less);
@@ -215,6 +218,21 @@ static void has_the_tables_of(const char *name, const played *a, const played *b
             fail_msg("%s: buffer %s: %llu and %llu bytes", name, a->need.buffers[i].name, (unsigned long long)a->need.buffers[i].bytes,
                      (unsigned long long)b->need.buffers[i].bytes);
     }
+}
+
+/* --explain's figures of an effect are the differences of the runtime's tables and counts. */
+static void adds_what_is_explained(scene_lab *l, const char *name, uint64_t effect, const played *with, const played *without) {
+    long long bytes = 0, work = 0;
+    const int read = sscanf(explanation(l, effect), " %*s %lld %lld", &bytes, &work);
+    if (!(effect & ADDS_MEASURED)) {
+        assert_int_equal(read, 0);
+        return;
+    }
+    if (read != 2 || bytes != (long long)(with->need.device_bytes - without->need.device_bytes))
+        fail_msg("%s: --explain says %lld bytes, the runtime's tables %lld", name, bytes,
+                 (long long)(with->need.device_bytes - without->need.device_bytes));
+    if (work != with->units - without->units)
+        fail_msg("%s: --explain says %lld work units, counted are %lld", name, work, with->units - without->units);
 }
 
 static void a_plain_scene_has_none_and_each_would_change_no_bit_of_it(void **state) {
@@ -258,6 +276,7 @@ static void each_is_called_for_by_its_scene_and_changes_it(void **state) {
         for (uint32_t k = 0; k < FRAMES; k++)
             if (with.hash[k] == without.hash[k])
                 fail_msg("%s: without it frame %u is the same", scenes[i].name, k);
+        adds_what_is_explained(l, scenes[i].name, effect, &with, &without);
         free(bytes);
     }
 }
@@ -323,6 +342,31 @@ static void effects_can_be_forced_on_and_off(void **state) {
     assert_int_equal(listed.need.effects & EFFECTS_NAMED, VIT_BIT(GLASS));
     assert_true(memcmp(listed.hash, automatic.hash, sizeof listed.hash) != 0);
     assert_true(explained(l, VIT_BIT(MIRROR), "forced off: material 'thing' (10 triangles)"));
+    bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "effects = [];", "", false);
+    bytes = load(l, &size);
+    const played none = play(bytes, size);
+    free(bytes);
+    assert_int_equal(none.need.effects & EFFECTS_NAMED, 0);
+    assert_memory_equal(listed.hash, none.hash, sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
+}
+
+static void mirrors_and_glass_are_left_out_one_by_one(void **state) {
+    scene_lab *l = *state;
+    size_t size;
+    bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }, { name = \"stone\"; kind = \"thin_glass\";", "", "background = [0.3, 0.4, 0.5];", "", false);
+    void *bytes = load(l, &size);
+    const played both = play(bytes, size), glass = play_without(bytes, VIT_BIT(MIRROR)), mirror = play_without(bytes, VIT_BIT(GLASS)),
+                 none = play_without(bytes, VIT_BIT(MIRROR) | VIT_BIT(GLASS));
+    for (uint32_t k = 0; k < FRAMES; k++) {
+        const uint64_t hashes[] = {both.hash[k], glass.hash[k], mirror.hash[k], none.hash[k]};
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < i; j++)
+                if (hashes[i] == hashes[j])
+                    fail_msg("frame %u: %d and %d are the same", k, i, j);
+    }
+    adds_what_is_explained(l, "a mirror beside glass", VIT_BIT(MIRROR), &both, &glass);
+    adds_what_is_explained(l, "glass beside a mirror", VIT_BIT(GLASS), &both, &mirror);
+    free(bytes);
 }
 
 int main(void) {
@@ -332,6 +376,7 @@ int main(void) {
         cmocka_unit_test(what_is_never_reached_is_not_called_for),
         cmocka_unit_test(bent_normals_call_for_smooth_ones),
         cmocka_unit_test(effects_can_be_forced_on_and_off),
+        cmocka_unit_test(mirrors_and_glass_are_left_out_one_by_one),
     };
     return cmocka_run_group_tests_name("effect scenes", tests, scene_lab_set_up, scene_lab_tear_down);
 }

@@ -82,6 +82,13 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses(TEST_SCENES "/furnace.cfg --texture-filter cubic" OUT, VIT_USAGE, "--texture-filter");
     bake_refuses(TEST_SCENES "/furnace.cfg --vertex-bits 8" OUT, VIT_USAGE, "--vertex-bits");
     bake_refuses(TEST_SCENES "/furnace.cfg --sample-bits 8" OUT, VIT_USAGE, "--sample-bits");
+    bake_refuses(TEST_SCENES "/furnace.cfg --antialias 3" OUT, VIT_USAGE, "--antialias");
+    bake_refuses(TEST_SCENES "/furnace.cfg --antialias-contrast nan" OUT, VIT_USAGE, "0 to 1");
+    bake_refuses(TEST_SCENES "/furnace.cfg --antialias-filter gauss" OUT, VIT_USAGE, "box or tent");
+    bake_refuses(TEST_SCENES "/furnace.cfg --light-samples 0" OUT, VIT_USAGE, "--light-samples");
+    bake_refuses(TEST_SCENES "/furnace.cfg --effects mirror,mirrors" OUT, VIT_USAGE, "names with commas");
+    bake_refuses(TEST_SCENES "/furnace.cfg --effects photons" OUT, VIT_USAGE, "names with commas"); /* not of surfaces, the sky or pixels */
+    bake_refuses(TEST_SCENES "/furnace.cfg --effects" OUT, VIT_USAGE, "--effects");
 }
 
 static void the_baker_names_a_file_that_is_missing(void **state) {
@@ -185,9 +192,35 @@ static void explain_writes_no_file_and_names_every_buffer(void **state) {
     tool(&r, TOOL_BAKE " --quiet --explain " SMALL);
     tool_succeeds(&r);
     assert_int_equal(empty(FOLDER), 0);
-    static const char *const words[] = {"effects\n", "buffers\n", "framebuffer", "device bytes", "emission"};
+    static const char *const words[] = {"effects  ", "work units", "buffers\n", "framebuffer", "device bytes", "emission"};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         assert_non_null(strstr(r.out, words[i]));
+}
+
+/* The line of --explain that begins with a name. */
+static const char *explained(const char *name) {
+    static char line[512];
+    const char *at = strstr(r.out, name);
+    assert_non_null(at);
+    (void)snprintf(line, sizeof line, "%.*s", (int)strcspn(at, "\n"), at);
+    return line;
+}
+
+static void options_choose_effects_as_the_scene_file_does(void **state) {
+    (void)state;
+    tool(&r, TOOL_BAKE " --quiet --explain " SMALL " --antialias 4 --antialias-filter tent");
+    tool_succeeds(&r);
+    assert_non_null(strstr(explained("  antialias "), " called for: quality.antialias"));
+    assert_non_null(strstr(explained("  film "), "antialias"));
+    tool(&r, TOOL_BAKE " --quiet --explain " SMALL " --antialias 4 --effects none");
+    tool_succeeds(&r);
+    assert_non_null(strstr(explained("  antialias "), "forced off"));
+    assert_null(strstr(r.out, "  film "));
+    tool(&r, TOOL_BAKE " --quiet --explain " SMALL " --effects gloss,mirror --specular-depth 3");
+    tool_succeeds(&r);
+    assert_non_null(strstr(explained("  gloss "), "forced on"));
+    assert_non_null(strstr(explained("  mirror "), "forced on"));
+    assert_non_null(strstr(explained("  glass "), "not called for"));
 }
 
 /* Changes frame `index`'s golden hash of XRGB8888 and makes all of the pack's hashes right again. */
@@ -344,6 +377,7 @@ int main(void) {
         cmocka_unit_test(a_bake_that_fails_leaves_the_old_pack_alone),
         cmocka_unit_test(an_interrupted_bake_exits_with_1_and_leaves_no_file),
         cmocka_unit_test(explain_writes_no_file_and_names_every_buffer),
+        cmocka_unit_test(options_choose_effects_as_the_scene_file_does),
         cmocka_unit_test(verify_tells_the_first_frame_that_differs),
         cmocka_unit_test(verify_of_a_format_without_golden_hashes_is_a_mismatch),
         cmocka_unit_test(a_pack_cut_short_or_flipped_is_bad_input),

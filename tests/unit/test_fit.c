@@ -133,20 +133,21 @@ static void what_misses_by_least_is_named(void **unused) {
 
 static void work_units_are_the_weighted_sum_of_what_is_equal_everywhere(void **unused) {
     static const char *const names[] = {"evaluations", "bytes", "box_tests", "unheard_of"};
-    cost_setting s = {.pass_count = 2};
+    vit_statistics s = {.pass_count = 2};
+    const vit_statistics *counted = &s;
     (void)unused;
     s.pass_work[0][0] = 10;
     s.pass_work[1][0] = 1;
-    const uint64_t evaluations = fit_work_units(&s, names, 4);
+    const uint64_t evaluations = fit_work_units(counted->pass_work, counted->pass_count, names, 4);
     assert_true(evaluations > 0 && evaluations % 11 == 0);
     s.pass_work[0][1] = s.pass_work[1][1] = 7;    /* bytes of a pass that counts something else: read from caches */
     s.pass_work[0][2] = s.pass_work[0][3] = 1000; /* depends on the lane width; has no weight */
     s.pass_work[2][0] = 1000;                     /* no pass of this setting */
-    assert_int_equal(fit_work_units(&s, names, 4), evaluations);
+    assert_int_equal(fit_work_units(counted->pass_work, counted->pass_count, names, 4), evaluations);
     s.pass_count = 3;
     s.pass_work[2][0] = 0;
     s.pass_work[2][1] = 9; /* a pass that only moves bytes */
-    assert_int_equal(fit_work_units(&s, names, 4), evaluations + 9);
+    assert_int_equal(fit_work_units(counted->pass_work, counted->pass_count, names, 4), evaluations + 9);
 }
 
 static void medians_percentiles_and_deviations_are_by_rank(void **unused) {
