@@ -99,7 +99,7 @@ static uint32_t ways(uint64_t effect) {
     if (effect == VIT_BIT(EMISSION) || effect == VIT_BIT(SKY_IMAGE))
         return VIT_REACHED_VIEW;
     if (effect == VIT_BIT(CAUSTICS))
-        return VIT_REACHED_PHOTON;
+        return VIT_REACHED_PHOTON | EFFECTS_REACHED_BAKED;
     return VIT_REACHED_VIEW | VIT_REACHED_PHOTON;
 }
 

@@ -14,9 +14,10 @@
 /* Effects that a scene's `effects` may name, force on and force off: those of surfaces, the sky and pixels. */
 #define EFFECTS_NAMED (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS))
 
+#define EFFECTS_REACHED_BAKED 4u /* by a photon path that is traced while baking */
 /* How and in which frames of the path rays reached something. */
 typedef struct effects_reached {
-    uint32_t how;              /* VIT_REACHED_*, all frames together */
+    uint32_t how;              /* VIT_REACHED_*, all frames together, and EFFECTS_REACHED_BAKED */
     uint32_t first, last;      /* frames that a view ray reached it in; photons' where none did */
     uint32_t frames;           /* number of these */
 } effects_reached;

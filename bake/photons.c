@@ -199,6 +199,8 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             return;
         float weight_of[3], u, v;
         const photon_surface s = photon_surface_seen(b->rays.s, o, d, t, triangle, PHOTON_CONE, weight_of);
+        if (b->in->met)
+            __atomic_store_n(&b->in->met[s.material - b->in->materials], 1, __ATOMIC_RELAXED);
         const bool matt = VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) == VIT_MATTE;
         if (!matt && !(effects & VIT_BIT(CAUSTICS)))
             return;

@@ -36,6 +36,7 @@ typedef struct photons_input {
     const cells *cells;                /* not NULL: a photon's zone is the index of the cell that it lands in; otherwise 0 */
     const photons_light *lights;       /* still lights */
     uint32_t light_count;
+    uint32_t *met;                 /* a word a material, set to 1 where a path meets it; may be NULL */
     photons_progress_fn *progress; /* may be NULL */
     void *user;
 } photons_input;

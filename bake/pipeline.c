@@ -142,8 +142,12 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
     photons_light *lights = calloc(out->tracks.light_count + 2u, sizeof *lights);
     uint32_t count = 0;
     vit_status status = VIT_OK;
-    if (!lights)
+    if (!out->met)
+        out->met = calloc(out->plan.scene.materials, sizeof *out->met);
+    if (!lights || !out->met) {
+        free(lights);
         return out_of_memory(why);
+    }
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
             lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i]};
@@ -168,6 +172,7 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
                             .cells = out->plan.scene.effects & VIT_BIT(ZONES) && out->cells.count ? &out->cells : NULL,
                             .lights = lights,
                             .light_count = count,
+                            .met = out->met,
                             .progress = step,
                             .user = p->progress};
         free(out->photons);
@@ -302,6 +307,8 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
         status = out_of_memory(why);
     if (status == VIT_OK)
         status = bounds_measure(&in, why);
+    for (uint32_t i = 0; i < out->plan.scene.materials && status == VIT_OK; i++)
+        reached[i].how |= out->met && out->met[i] ? EFFECTS_REACHED_BAKED : 0;
     if (status == VIT_OK)
         effects_settle(&out->plan.scene, out->model, out->plan.materials, reached, &out->plan.effects);
     free(reached);
@@ -338,6 +345,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->bytes);
     free(packed->gold);
     free(packed->photons);
+    free(packed->met);
     free(packed->emitters);
     cells_free(&packed->cells);
     plan_free(&packed->plan);

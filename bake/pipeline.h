@@ -60,6 +60,7 @@ typedef struct pipeline_packed {
     zones_found zones;
     vit_emitter *emitters; /* section EMIT */
     vit_photon *photons;
+    uint32_t *met; /* a word a material: 1 where baked photons met it */
     vit_gold *gold;
     pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */
     void *bytes;            /* the pack */

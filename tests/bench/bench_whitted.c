@@ -12,12 +12,13 @@ typedef struct whitted_scene {
     const char *name;
     double source[4]; /* frames a second of the source, 1280x968, for each of the modes */
     const char *cfg;
+    const char *effects; /* what the materials call for, with a comma behind */
     bench_scene mesh;
 } whitted_scene;
 
 static const whitted_scene scenes[] = {
-    {"bunny", {0.94, 0.93, 0.28, 0.26}, NULL, {.name = "bunny", .mesh = "stanford/bun_zipper.ply"}},
-    {"balls", {1.85, 1.54, 0.58, 0.58}, VIT_BUILD_DIR "/scenes/balls.cfg", {.name = "balls", .mesh = "balls.obj", .own = true}},
+    {"bunny", {0.94, 0.93, 0.28, 0.26}, NULL, "", {.name = "bunny", .mesh = "stanford/bun_zipper.ply"}},
+    {"balls", {1.85, 1.54, 0.58, 0.58}, VIT_BUILD_DIR "/scenes/balls.cfg", "mirror,glass,", {.name = "balls", .mesh = "balls.obj", .own = true}},
 };
 #define SCENES (sizeof scenes / sizeof *scenes)
 
@@ -26,10 +27,10 @@ static const struct {
     const char *name, *effects, *antialias;
     double goal; /* frames a second on two cores */
 } modes[] = {
-    {"plain", "mirror,glass", "1", 60},
-    {"smooth normals", "auto", "1", 60},
-    {"4x anti-aliasing", "mirror,glass,antialias", "4", 15},
-    {"both", "auto", "4", 15},
+    {"plain", "none", "1", 60},
+    {"smooth normals", "smooth-normals", "1", 60},
+    {"4x anti-aliasing", "antialias", "4", 15},
+    {"both", "smooth-normals,antialias", "4", 15},
 };
 #define MODES (sizeof modes / sizeof *modes)
 
@@ -62,7 +63,7 @@ static bool write_bunny(const char *mesh, const char *path) {
 /* False if the scene is not at hand. */
 static bool bake(const whitted_scene *s, size_t mode, char out[BENCH_PATH]) {
     char mesh[BENCH_PATH], cfg[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", to[] = "-o", quiet[] = "--quiet",
-                                            effects[] = "--effects", chosen[32], antialias[] = "--antialias", copies[32];
+                                            effects[] = "--effects", chosen[64], antialias[] = "--antialias", copies[32];
     if (!scene_mesh_path(&s->mesh, mesh))
         return false;
     bench_folder(BENCH_FOLDER);
@@ -73,7 +74,8 @@ static bool bake(const whitted_scene *s, size_t mode, char out[BENCH_PATH]) {
     if (is_newer(out, cfg) && is_newer(out, baker) && is_newer(out, mesh))
         return true;
     printf("baking %s\n", out);
-    snprintf(chosen, sizeof chosen, "%s", modes[mode].effects);
+    const bool none = s->effects[0] != 0 && strcmp(modes[mode].effects, "none") == 0; /* of its own, but the materials' */
+    snprintf(chosen, sizeof chosen, "%.*s%s", (int)strlen(s->effects) - none, s->effects, none ? "" : modes[mode].effects);
     snprintf(copies, sizeof copies, "%s", modes[mode].antialias);
     char *const argv[] = {baker, cfg, to, out, quiet, effects, chosen, antialias, copies, NULL};
     child_run(argv, NULL, false);

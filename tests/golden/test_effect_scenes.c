@@ -350,6 +350,21 @@ static void effects_can_be_forced_on_and_off(void **state) {
     assert_memory_equal(listed.hash, none.hash, sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
 }
 
+/* Photons of a still light are traced while baking. */
+static void caustics_of_still_lights_are_called_for_too(void **state) {
+    scene_lab *l = *state;
+    size_t size;
+    bake(l, "{ type = \"point\"; keys = ( { position = [0.9, 2.5, 0.6]; power = [50.0, 60.0, 70.0]; } ); }",
+         "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "kind = \"glass\";", "", "", false);
+    void *bytes = load(l, &size);
+    const played with = play(bytes, size);
+    free(bytes);
+    assert_true(with.need.effects & VIT_BIT(CAUSTICS));
+    assert_false(with.need.effects & (VIT_BIT(TRACED) | VIT_BIT(GLASS)));
+    assert_true(explained(l, VIT_BIT(CAUSTICS), "called for: material 'thing' (10 triangles), met by photons"));
+    assert_true(explained(l, VIT_BIT(GLASS), "never reached on the path: material 'secret'"));
+}
+
 static void mirrors_and_glass_are_left_out_one_by_one(void **state) {
     scene_lab *l = *state;
     size_t size;
@@ -376,6 +391,7 @@ int main(void) {
         cmocka_unit_test(what_is_never_reached_is_not_called_for),
         cmocka_unit_test(bent_normals_call_for_smooth_ones),
         cmocka_unit_test(effects_can_be_forced_on_and_off),
+        cmocka_unit_test(caustics_of_still_lights_are_called_for_too),
         cmocka_unit_test(mirrors_and_glass_are_left_out_one_by_one),
     };
     return cmocka_run_group_tests_name("effect scenes", tests, scene_lab_set_up, scene_lab_tear_down);
