@@ -44,7 +44,7 @@ static inline lu host_splat_u(uint x) {
 
 /* Without such instructions these are calls of the C library, a lane each: in one place, not in thousands. */
 #ifdef __FP_FAST_FMAF
-#define HOST_INLINE static inline
+#define HOST_INLINE static inline __attribute__((always_inline))
 #else
 #define HOST_INLINE static __attribute__((noinline, unused))
 #endif
