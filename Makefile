@@ -65,10 +65,12 @@ endif
 HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
 # Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
 # are not looked at, and records are read as other types.
-# GCC by itself stops inlining after the first few kernels; calls then cost a quarter of the time, since no vector register survives them.
-HOST_INLINING := $(if $(shell $(CC) --version 2>/dev/null | grep 'Free Software Foundation'),--param inline-unit-growth=400 --param large-function-growth=1000 --param large-stack-frame-growth=10000)
+# What people play with is optimised; the other widths are there to be compared, and compile for half a minute each if they are. GCC by itself stops
+# inlining after the first few kernels; calls then cost a third of the time, since no vector register survives them.
+HOST_FAST := %_1 avx512_8 avx512_16 avx2_8 $(if $(filter x86_64-%,$(MACHINE)),,%)
+HOST_OPT := -O3 $(if $(shell $(CC) --version 2>/dev/null | grep 'Free Software Foundation'),--param inline-unit-growth=400 --param large-function-growth=1000 --param large-stack-frame-growth=10000)
 HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -fno-math-errno \
-               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-O3 -g $(HOST_INLINING),$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
+               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
@@ -93,7 +95,7 @@ $(B)/host_programs.h: Makefile
 	@mkdir -p $(@D)
 	@for p in $(HOST_PROGRAMS); do echo "PROGRAM($${p%_*}, $${p##*_})"; done > $@
 $(HOST_OBJECTS): $(B)/host_%.o: runtime/host/kernels.c $(B)/kernel_list.h
-	$(CC) $(HOST_CFLAGS) $(HOST_FLAGS_$(firstword $(subst _, ,$*))) -DVIT_LANES=$(lastword $(subst _, ,$*)) \
+	$(CC) $(HOST_CFLAGS) $(if $(filter release,$(config)),$(if $(filter $(HOST_FAST),$*),$(HOST_OPT),-O1)) $(HOST_FLAGS_$(firstword $(subst _, ,$*))) -DVIT_LANES=$(lastword $(subst _, ,$*)) \
 	   -DHOST_ISA='"$(firstword $(subst _, ,$*))"' -DHOST_PROGRAM=vit_host_$* -c $< -o $@
 $(B)/runtime/host/programs.o: CFLAGS_ALL += -I$(B)
 $(B)/runtime/host/programs.o: $(B)/host_programs.h

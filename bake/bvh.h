@@ -23,11 +23,13 @@ void bvh_free(bvh *b);
 typedef struct geometry {
     vit_triangle *triangles;   /* model.triangles records, leaf order */
     vit_attributes *attributes;
-    float ray_offset;          /* see vit_scene.ray_offset: 2^-14 of ... see geometry.c */
+    float ray_offset;          /* geometry_ray_offset() */
 } geometry;
 
 /* Writes the records in leaf order; oct-encodes normals (error bound stated in octahedral.h and tested). */
 vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *why);
 void geometry_free(geometry *g);
+/* How far rays leave a surface of the model, vit_scene.ray_offset, metres. */
+float geometry_ray_offset(const model *m);
 
 #endif

@@ -185,8 +185,10 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
     const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, m, materials, reached);
     const int o = other(effect, m->material_count);
     sentence s = {.text = out->reason[bit]};
+    if (forced_off && (acts || !is_settled(effect)))
+        out->missed |= effect;
     if (forced_off)
-        say(&s, "forced off: ");
+        say(&s, EFFECTS_FORCED_OFF);
     else if (out->dropped & effect)
         say(&s, "not called for: never reached on the path");
     else if (!(c->effects & effect))
@@ -207,7 +209,7 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
 }
 
 void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached, effects_decided *out) {
-    out->dropped = 0;
+    out->dropped = out->missed = 0;
     for (int bit = 0; bit < 64; bit++) {
         const uint64_t effect = (uint64_t)1 << bit;
         if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) && !is_reached(effect, m, materials, reached))

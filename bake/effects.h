@@ -30,10 +30,12 @@ typedef struct effects_reached {
 void effects_note(effects_reached *reached, uint32_t materials, const uint32_t *words, uint64_t cutout_tests, uint32_t frame);
 
 #define EFFECTS_REASON 320
+#define EFFECTS_FORCED_OFF "forced off: " /* before the reason of what is */
 /* What was decided of each effect, by its bit. */
 typedef struct effects_decided {
     uint64_t forced_on, forced_off; /* by the scene's `effects` */
     uint64_t dropped;               /* asked for, but never reached */
+    uint64_t missed;                /* forced off, though frames change by it */
     char reason[64][EFFECTS_REASON];
 } effects_decided;
 

@@ -52,7 +52,7 @@ static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t m
 /* How far rays leave a surface, metres. A computed hit position is wrong by some ulps of the largest coordinate that went into
  * it; 2^-16 of that is 256 ulps, an order above what eye + t * d loses. At least 1e-5 of the diagonal, so that in the gap of
  * nearly touching faces (modelled on a coarse grid) no shadow ray starts: what lies closer than this counts as touching. */
-static float ray_offset(const model *m) {
+float geometry_ray_offset(const model *m) {
     float largest = 0.0f, lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
         for (size_t k = 0; k < 3; k++) {
@@ -79,7 +79,7 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
         pack_triangle(m, corner, out->triangles + i);
         pack_attributes(m, corner, m->material[b->order[i]], out->triangles + i, out->attributes + i);
     }
-    out->ray_offset = ray_offset(m);
+    out->ray_offset = geometry_ray_offset(m);
     return VIT_OK;
 }
 

@@ -27,6 +27,13 @@ static void on_signal(int number) {
     _exit(VIT_FAILED);
 }
 
+static void warn_of_missed_effects(bake *b) {
+    const effects_decided *e = &b->packed.plan.effects;
+    for (int bit = 0; bit < 64; bit++)
+        if (e->missed >> bit & 1)
+            progress_line(&b->progress, true, "warning: %s is left out: %s", effects_name(bit), e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
+}
+
 static vit_status make_pack(bake *b, vit_text *why) {
     pipeline *p = &b->pipeline;
     p->strict = b->options.strict;
@@ -42,12 +49,17 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (status != VIT_OK)
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
+    const pipeline_choice asked = pipeline_default(p);
     if (budget.ms > 0 || budget.work > 0)
-        return fit_pack(p, &budget, &b->packed, why);
-    const pipeline_choice choice = pipeline_default(p);
-    if (plan_leaves_area_out(&choice.quality))
+        status = fit_pack(p, &budget, &b->packed, why);
+    else
+        status = pipeline_pack(p, &asked, &b->packed, why);
+    if (status != VIT_OK)
+        return status;
+    if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
-    return pipeline_pack(p, &choice, &b->packed, why);
+    warn_of_missed_effects(b);
+    return VIT_OK;
 }
 
 /* A line each: name, what it adds, why. */

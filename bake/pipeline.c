@@ -1,6 +1,7 @@
 /* import -> tracks -> BVH -> geometry -> reach -> atlas | plan -> photons -> bounds -> pack. Data flows one way. */
 #include "pipeline.h"
 #include "bounds.h"
+#include "glass_gap.h"
 #include "photons.h"
 #include "scene_move.h"
 #include <math.h>
@@ -26,6 +27,10 @@ static void step(void *user, double fraction) {
 vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
     const char *dot = strrchr(path, '.');
     return dot && strcmp(dot, ".cfg") == 0 ? scene_read(path, out, why) : scene_for_mesh(path, out, why);
+}
+
+static vit_status draw_glass_in(model *m, vit_text *why) {
+    return glass_gap(m, geometry_ray_offset(m)) ? VIT_OK : out_of_memory(why);
 }
 
 /* BVH, triangles and dark sides of the model. */
@@ -80,7 +85,9 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
         status = tracks_evaluate(&p->scene, &p->model, &p->tracks, why);
     if (status != VIT_OK)
         return status;
-    status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
+    status = draw_glass_in(&p->model, why);
+    if (status == VIT_OK)
+        status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
     p->kept = calloc(1, sizeof *p->kept);
     if (status == VIT_OK && !p->kept)
         status = out_of_memory(why);
@@ -119,7 +126,9 @@ static vit_status choose_shape(const pipeline *p, const scene_quality *q, pipeli
     if (q->vertex_bits != 16 && q->normal_bits != 8)
         return VIT_OK;
     pipeline_shape *c = &out->coarse;
-    const vit_status status = model_quantise(&p->model, q->vertex_bits, q->normal_bits, &c->model, why);
+    vit_status status = model_quantise(&p->model, q->vertex_bits, q->normal_bits, &c->model, why);
+    if (status == VIT_OK && q->vertex_bits == 16) /* on the grid faces may be in one place again */
+        status = draw_glass_in(&c->model, why);
     if (status != VIT_OK)
         return status;
     out->model = &c->model;
@@ -302,7 +311,7 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
     point_sections(p, out);
     cut_frames(c, out);
     effects_reached *reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *reached);
-    in.reached = out->plan.scene.effects & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)) ? reached : NULL; /* else there is nothing to find out */
+    in.reached = (out->plan.scene.effects | out->plan.effects.forced_off) & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)) ? reached : NULL; /* else there is nothing to find out */
     if (status == VIT_OK && !reached)
         status = out_of_memory(why);
     if (status == VIT_OK)

@@ -339,6 +339,8 @@ static void effects_can_be_forced_on_and_off(void **state) {
     bytes = load(l, &size);
     const played listed = play(bytes, size);
     free(bytes);
+    assert_true(scene_lab_said(l, "warning: mirror is left out: material 'thing' (10 triangles), visible in all frames"));
+    assert_false(scene_lab_said(l, "warning: glass"));
     assert_int_equal(listed.need.effects & EFFECTS_NAMED, VIT_BIT(GLASS));
     assert_true(memcmp(listed.hash, automatic.hash, sizeof listed.hash) != 0);
     assert_true(explained(l, VIT_BIT(MIRROR), "forced off: material 'thing' (10 triangles)"));
@@ -347,6 +349,7 @@ static void effects_can_be_forced_on_and_off(void **state) {
     const played none = play(bytes, size);
     free(bytes);
     assert_int_equal(none.need.effects & EFFECTS_NAMED, 0);
+    assert_true(scene_lab_said(l, "warning: mirror is left out: material 'thing' (10 triangles), visible in all frames"));
     assert_memory_equal(listed.hash, none.hash, sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
 }
 

@@ -2,6 +2,7 @@
  * accepted must make a pack that the loader takes. Dark sides and zones take a second whatever the mesh: one input of 64 goes
  * through them, and every seed in make test (fuzz_mesh_whole). */
 #include "fuzz.h"
+#include "glass_gap.h"
 #include "pack_read.h"
 #include "photons.h"
 #include "planner.h"
@@ -41,6 +42,8 @@ static void warned(void *user, const char *line) {
 /* Steps in the order of pipeline.c. One frame, so that the light is still and its photons are baked. */
 static vit_status make_shape(bake *k, vit_text *why) {
     vit_status status = tracks_evaluate(&k->s, &k->m, &k->t, why);
+    if (status == VIT_OK && !glass_gap(&k->m, geometry_ray_offset(&k->m)))
+        status = VIT_FAILED;
     if (status == VIT_OK)
         status = bvh_build(&k->m, 1, &k->b, why);
     if (status == VIT_OK)

@@ -1,0 +1,14 @@
+/* glass_gap.c: bodies of glass do not touch what they stand on. */
+#ifndef VIT_BAKE_GLASS_GAP_H
+#define VIT_BAKE_GLASS_GAP_H
+
+#include "model.h"
+#include <stdbool.h>
+
+/* Draws the faces of VIT_GLASS in by GLASS_GAP ray offsets, `ray_offset` metres each: a ray that leaves a body starts beyond its face, and
+ * so would start beyond a table that the face lies on; which of two faces in one place it meets is up to rounding. A vertex moves by at most
+ * 1 / 8 of its shortest edge, so that no triangle turns over. False: out of memory, and nothing has moved. */
+#define GLASS_GAP 1.5
+bool glass_gap(model *m, float ray_offset);
+
+#endif
