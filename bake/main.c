@@ -79,7 +79,7 @@ static void explain_effects(const pipeline_packed *p, const adds *all) {
     }
 }
 
-static vit_status explain(const bake *b, vit_text *why) {
+static vit_status explain(bake *b, vit_text *why) {
     const pipeline *p = &b->pipeline;
     const vit_scene *s = &b->packed.plan.scene;
     vit_requirements need;
@@ -88,7 +88,8 @@ static vit_status explain(const bake *b, vit_text *why) {
     if (status != VIT_OK)
         return status;
     adds all;
-    status = adds_measure(&b->packed, p->threads, &all, why);
+    status = adds_measure(&b->packed, p->threads, &b->progress, &all, why);
+    progress_end(&b->progress);
     if (status != VIT_OK)
         return status;
     explain_effects(&b->packed, &all);

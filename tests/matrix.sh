@@ -28,11 +28,31 @@ bake cornell tiny-zones "$tiny --zones 2 --effective-area 1 --kernel flattened -
 bake cornell tiny-buckets "$tiny --estimate buckets --normal-keys 1 --sample-bits 16 --indirect-samples 1"
 bake cornell tiny-raw "$tiny --estimate buckets --smoothing raw --indirect-samples 16"
 bake atrium tiny-atrium "$tiny --texture-filter trilinear"
+# Our balls in all effects that they can have; the sky is a picture of two texels.
+printf '\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\30\0\200\140\100\100\140\200' > "$out/sky.tga"
+cat > "$out/shine.cfg" <<EOF
+output: { width = 128; height = 96; frames = 2; };
+meshes = ( { file = "$tools/scenes/balls.obj"; } );
+camera: { keys = ( { eye = [0.0, 2.9, 8.4]; target = [0.3, 0.55, 0.0]; fov = 46.0; } ); };
+sky: { image = "sky.tga"; light = true; };
+ambient = [0.02, 0.02, 0.03];
+materials = (
+    { name = "mirror_silver"; kind = "mirror"; specular = [0.9, 0.9, 0.9]; }, { name = "mirror_gold"; kind = "thin_glass"; },
+    { name = "glass_clear"; kind = "glass"; ior = 1.5; }, { name = "glass_green"; kind = "glass"; ior = 1.3; absorption = [1.2, 0.2, 0.8]; },
+    { name = "tile_light"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = "matt_red"; emission = [4.0, 3.0, 2.0]; } );
+lights = (
+    { type = "spot"; inner = 20.0; outer = 40.0; range = 40.0; keys = ( { position = [-4.5, 7.5, 5.5]; target = [0.0, 0.0, 0.0]; power = [900.0, 900.0, 900.0]; },
+                                                                        { time = 1.0; position = [4.5, 7.5, 5.5]; } ); },
+    { type = "directional"; keys = ( { position = [1.0, 3.0, 2.0]; target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); } );
+quality: { photons = 4000; antialias = 4; light_samples = 4; sky_samples = 4; };
+EOF
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/shine.vit" --quiet --device host || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-shine.vit" --quiet --device host $tiny || exit 1
 
 play="$tools/vitrine-play --verify --quiet"
 pocl=$("$tools/vitrine-play" --list-devices | sed -n 's/^\([0-9]*\) Portable Computing Language .*/\1/p' | head -1)
 [ -n "$pocl" ] || absent "PoCL"
-for name in list zones buckets atrium; do
+for name in list zones buckets atrium shine; do
     pack=$out/$name.vit
     echo "== $name"
     for device in ${pocl:+basic pthread}; do
@@ -65,7 +85,7 @@ done
 
 if [ -n "${INTEL_OPENCL:-}" ]; then
     mkdir -p "$out/intel-icd" && echo "$INTEL_OPENCL/libintelocl.so" > "$out/intel-icd/intel.icd"
-    for name in list zones buckets atrium; do
+    for name in list zones buckets atrium shine; do
         for lanes in 1 8 16; do
             row "Intel OpenCL, $name, $lanes lanes" env OCL_ICD_VENDORS="$out/intel-icd" LD_LIBRARY_PATH="$INTEL_OPENCL${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" $play "$out/$name.vit" --device 0 --lanes $lanes
         done
@@ -82,7 +102,7 @@ oclgrind_row() { # pack, group
     [ ! -s "$out/oclgrind.log" ] || { cat "$out/oclgrind.log"; return 1; }
 }
 if command -v oclgrind >/dev/null; then
-    for name in list zones buckets raw atrium; do
+    for name in list zones buckets raw atrium shine; do
         for group in 1 32; do
             row "Oclgrind, tiny $name, groups of $group: hashes, bounds, races" oclgrind_row tiny-$name $group
         done
@@ -96,7 +116,7 @@ if clang -fsanitize=memory "$out/empty.c" -o "$out/empty" 2>/dev/null; then
     make --no-print-directory -s OPENCL=0 B=build/msan CC="clang -fsanitize=memory -fno-sanitize-recover -w" HOST_ISAS=baseline build/msan/libvitrine.a >"$out/msan.log" 2>&1 &&
         clang -fsanitize=memory -fno-sanitize-recover -Iinclude tests/matrix/hashes.c build/msan/libvitrine.a -lpthread -lm -o "$out/hashes-msan" >>"$out/msan.log" 2>&1 ||
         echo "FAILED   MemorySanitizer: does not build, see $out/msan.log"
-    for name in list zones buckets raw atrium; do
+    for name in list zones buckets raw atrium shine; do
         for lanes in 1 8 16; do
             row "host under MemorySanitizer, tiny $name, $lanes lanes" "$out/hashes-msan" "$out/tiny-$name.vit" $lanes
         done
@@ -110,7 +130,7 @@ for machine in aarch64 riscv64 s390x; do
     if command -v $cc >/dev/null && command -v $qemu >/dev/null; then
         make --no-print-directory -s OPENCL=0 B="$build" CC=$cc "$build/libvitrine.a" >"$out/$machine.log" 2>&1 &&
             $cc -O2 -Iinclude tests/matrix/hashes.c "$build/libvitrine.a" -static -lpthread -lm -o "$out/hashes-$machine" >>"$out/$machine.log" 2>&1 || { failed=$((failed + 1)); echo "FAILED   $machine: does not build, see $out/$machine.log"; continue; }
-        for name in list zones buckets atrium; do
+        for name in list zones buckets atrium shine; do
             for lanes in 1 8; do
                 row "$machine under qemu, $name, $lanes lanes" $qemu "$out/hashes-$machine" "$out/$name.vit" $lanes
             done

@@ -2,10 +2,24 @@
 #include "effects.h"
 #include "fit.h"
 #include "opened.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define SOURCES (VIT_BIT(LIGHTS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
+
+/* The lights of all frames, with their photon paths or without. NULL: out of memory. */
+static vit_light *lights_with_paths(const pack_sections *whole, const vit_scene *s, bool paths) {
+    const size_t count = (size_t)s->frames * s->lights;
+    vit_light *lights = malloc((count + 1) * sizeof *lights);
+    if (!lights)
+        return NULL;
+    if (count > 0)
+        memcpy(lights, whole->data[VIT_SECTION_LITE], count * sizeof *lights);
+    for (size_t i = 0; i < count && !paths; i++)
+        lights[i].path_first = lights[i].path_count = 0;
+    return lights;
+}
 
 vit_status adds_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why) {
     pack_sections sections = *whole;
@@ -16,8 +30,10 @@ vit_status adds_without(const pack_sections *whole, uint64_t effects, void **byt
         effects_drop(&s, VIT_BIT(PHOTONS));
     if (!(s.effects & VIT_BIT(LIGHTS)))
         s.lights = 0;
+    if (!(s.effects & VIT_BIT(TRACED)))
+        s.paths = 0;
     if (!(s.effects & VIT_BIT(PHOTONS)))
-        s.paths = s.baked = 0;
+        s.baked = 0;
     if (!(s.effects & (VIT_BIT(ZONES) | VIT_BIT(AREA))))
         s.cells = 0;
     if (s.area_samples == 0 && all->area_samples > 0) /* the sky's come after them */
@@ -25,8 +41,17 @@ vit_status adds_without(const pack_sections *whole, uint64_t effects, void **byt
     if (!(s.effects & VIT_BIT(SKY_IMAGE)))
         s.sky_size = 0;
     sections.data[VIT_SECTION_META] = &s;
-    const vit_status status = vit_pack_derive(&s, why);
-    return status == VIT_OK ? pack_assemble(&sections, bytes, size, why) : status;
+    vit_light *lights = lights_with_paths(whole, all, s.paths > 0);
+    if (!lights) {
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    sections.data[VIT_SECTION_LITE] = lights;
+    vit_status status = vit_pack_derive(&s, why);
+    if (status == VIT_OK)
+        status = pack_assemble(&sections, bytes, size, why);
+    free(lights);
+    return status;
 }
 
 /* Bytes and mean work of a pack. */
@@ -68,12 +93,15 @@ static vit_status measure_without(const pipeline_packed *p, uint64_t effect, uns
     return status == VIT_BAD_INPUT ? VIT_OK : status; /* the loader does not take it: records call for the effect */
 }
 
-vit_status adds_measure(const pipeline_packed *p, unsigned threads, adds *out, vit_text *why) {
+vit_status adds_measure(const pipeline_packed *p, unsigned threads, progress *shown, adds *out, vit_text *why) {
     memset(out, 0, sizeof *out);
+    progress_stage(shown, "what each effect adds");
     const uint64_t called = p->plan.scene.effects & ADDS_MEASURED;
     vit_status status = measure(p->bytes, p->size, threads, &out->device_bytes, &out->work, why);
-    for (int bit = 0; bit < 64 && status == VIT_OK; bit++)
+    for (int bit = 0; bit < 64 && status == VIT_OK; bit++) {
+        progress_step(shown, bit / 64.0);
         if (called >> bit & 1)
             status = measure_without(p, (uint64_t)1 << bit, threads, out, &out->effect[bit], why);
+    }
     return status;
 }

@@ -25,6 +25,6 @@ typedef struct adds {
 vit_status adds_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why);
 
 /* Measures on the device `host`, with exact counts: the same figures on every machine. */
-vit_status adds_measure(const pipeline_packed *p, unsigned threads, adds *out, vit_text *why);
+vit_status adds_measure(const pipeline_packed *p, unsigned threads, progress *shown, adds *out, vit_text *why);
 
 #endif

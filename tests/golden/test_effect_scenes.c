@@ -384,6 +384,9 @@ static void mirrors_and_glass_are_left_out_one_by_one(void **state) {
     }
     adds_what_is_explained(l, "a mirror beside glass", VIT_BIT(MIRROR), &both, &glass);
     adds_what_is_explained(l, "glass beside a mirror", VIT_BIT(GLASS), &both, &mirror);
+    const played photons = play_without(bytes, VIT_BIT(PHOTONS)), dark = play_without(bytes, VIT_BIT(LIGHTS));
+    adds_what_is_explained(l, "photons of a moving light", VIT_BIT(PHOTONS), &both, &photons);
+    adds_what_is_explained(l, "the light", VIT_BIT(LIGHTS), &both, &dark);
     free(bytes);
 }
 

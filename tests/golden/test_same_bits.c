@@ -72,7 +72,6 @@ static const variant one_at_a_time[] = {
     {"", "--lanes 8"},
     {"", "--lanes 16"},
     {"", "--group 1"},
-    {"", "--group 2"},
     {"", "--group 32"},
     {"", "--group 256"},
     {"POCL_DEVICES=basic", ""},
@@ -143,10 +142,10 @@ ALIKE(flattened_photons_hash_the_same, "flattened", few)
 ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys", few)
 ALIKE(interpolated_light_hashes_the_same, "sparse", together)
 ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets", together)
-ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", together)
+ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", few)
 ALIKE(nearest_texels_hash_the_same, "nearest", few)
 ALIKE(trilinear_textures_hash_the_same, "trilinear", few)
-ALIKE(small_samples_hash_the_same, "small", together)
+ALIKE(small_samples_hash_the_same, "small", few)
 ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse", few)
 ALIKE(zones_areas_and_sequence_hash_the_same, "zones", together)
 ALIKE(zones_in_buckets_hash_the_same, "zones-buckets", together)
