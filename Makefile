@@ -95,7 +95,7 @@ $(B)/host_programs.h: Makefile
 	@mkdir -p $(@D)
 	@for p in $(HOST_PROGRAMS); do echo "PROGRAM($${p%_*}, $${p##*_})"; done > $@
 $(HOST_OBJECTS): $(B)/host_%.o: runtime/host/kernels.c $(B)/kernel_list.h
-	$(CC) $(HOST_CFLAGS) $(if $(filter release,$(config)),$(if $(filter $(HOST_FAST),$*),$(HOST_OPT),-O1)) $(HOST_FLAGS_$(firstword $(subst _, ,$*))) -DVIT_LANES=$(lastword $(subst _, ,$*)) \
+	$(CC) $(if $(filter release,$(config)),$(if $(filter $(HOST_FAST),$*),$(HOST_OPT),-O1)) $(HOST_CFLAGS) $(HOST_FLAGS_$(firstword $(subst _, ,$*))) -DVIT_LANES=$(lastword $(subst _, ,$*)) \
 	   -DHOST_ISA='"$(firstword $(subst _, ,$*))"' -DHOST_PROGRAM=vit_host_$* -c $< -o $@
 $(B)/runtime/host/programs.o: CFLAGS_ALL += -I$(B)
 $(B)/runtime/host/programs.o: $(B)/host_programs.h

@@ -168,8 +168,8 @@ static bool is_settled(uint64_t effect) {
     return effect & EFFECTS_SETTLED;
 }
 
-static bool is_reached(uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached) {
-    const int o = other(effect, m->material_count);
+/* o: the record that says so, or -1. */
+static bool is_reached(uint64_t effect, int o, const model *m, const vit_material *materials, const effects_reached *reached) {
     if (o >= 0)
         return reached[o].how & ways(effect);
     for (int i = 0; i < m->material_count; i++)
@@ -182,10 +182,11 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
                     effects_decided *out) {
     const uint64_t effect = (uint64_t)1 << bit;
     const bool forced_on = out->forced_on & effect, forced_off = out->forced_off & effect;
-    const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, m, materials, reached);
-    const int o = other(effect, m->material_count);
+    /* No texel of a cut-out material is tested where cut-outs are left out. */
+    const int o = forced_off && effect == VIT_BIT(CUTOUT) ? -1 : other(effect, m->material_count);
+    const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, o, m, materials, reached);
     sentence s = {.text = out->reason[bit]};
-    if (forced_off && (acts || !is_settled(effect)))
+    if (forced_off && (effect & EFFECTS_NAMED) && (acts || !is_settled(effect)))
         out->missed |= effect;
     if (forced_off)
         say(&s, EFFECTS_FORCED_OFF);
@@ -212,7 +213,7 @@ void effects_settle(vit_scene *c, const model *m, const vit_material *materials,
     out->dropped = out->missed = 0;
     for (int bit = 0; bit < 64; bit++) {
         const uint64_t effect = (uint64_t)1 << bit;
-        if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) && !is_reached(effect, m, materials, reached))
+        if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) && !is_reached(effect, other(effect, m->material_count), m, materials, reached))
             out->dropped |= effect;
     }
     const uint64_t before = c->effects;

@@ -40,26 +40,28 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Shortest of the two edges of the triangle at a corner, m. */
-static double shortest_edge(const model *m, uint32_t corner) {
-    double least = INFINITY;
-    const float *p = position(m, corner / 3, corner % 3);
-    for (uint32_t k = 1; k < 3; k++) {
-        const float *q = position(m, corner / 3, (corner + k) % 3);
+/* Least height of the triangle, m: over its longest edge. */
+static double height(const model *m, uint32_t triangle) {
+    double longest = 0.0;
+    float n[3];
+    for (uint32_t k = 0; k < 3; k++) {
+        const float *p = position(m, triangle, k), *q = position(m, triangle, (k + 1) % 3);
         const double e[3] = {(double)q[0] - (double)p[0], (double)q[1] - (double)p[1], (double)q[2] - (double)p[2]};
-        least = fmin(least, sqrt(dot(e, e)));
+        longest = fmax(longest, sqrt(dot(e, e)));
     }
-    return least;
+    triangle_normal(position(m, triangle, 0), position(m, triangle, 1), position(m, triangle, 2), n);
+    const double twice_area[3] = {(double)n[0], (double)n[1], (double)n[2]};
+    return longest > 0.0 ? sqrt(dot(twice_area, twice_area)) / longest : 0.0;
 }
 
 /* Moves the corners at one place so that each face there moves in by `gap`. */
 static void draw_in(const model *m, corner_at *at, size_t count, double gap) {
-    double normals[MOST][3], sum[3] = {0, 0, 0}, edge = INFINITY, least = 1.0;
+    double normals[MOST][3], sum[3] = {0, 0, 0}, least_height = INFINITY, least = 1.0;
     size_t found = 0;
     for (size_t i = 0; i < count; i++) {
         double n[3];
         bool known = !unit_normal(m, at[i].corner / 3, n) || found == MOST;
-        edge = fmin(edge, shortest_edge(m, at[i].corner));
+        least_height = fmin(least_height, height(m, at[i].corner / 3));
         for (size_t k = 0; k < found && !known; k++)
             known = dot(n, normals[k]) > SAME_WAY;
         if (known)
@@ -73,7 +75,7 @@ static void draw_in(const model *m, corner_at *at, size_t count, double gap) {
         return;
     for (size_t k = 0; k < found; k++)
         least = fmin(least, dot(sum, normals[k]) / length);
-    const double way = fmin(gap / fmax(least, MITRE), edge / 8.0);
+    const double way = fmin(gap / fmax(least, MITRE), least_height / 8.0);
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
             at[i].p[k] = (float)((double)at[i].p[k] - way * sum[k] / length);

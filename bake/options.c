@@ -62,7 +62,7 @@ static bool effects_of(const char *text, options *o) {
         char name[32];
         length = strcspn(text, ",");
         snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), text);
-        if (!(effects_named(name) & EFFECTS_NAMED))
+        if (!(effects_named(name) & EFFECTS_NAMED) || (text[length] == ',' && text[length + 1] == 0))
             return false;
         o->effects |= effects_named(name);
     }

@@ -211,7 +211,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             power = vec3_scale(power, range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
         if (matt) {
-            const vec3 gloss = effects & VIT_BIT(GLOSS) ? vec3_load(s.material->specular) : (vec3){0.0f, 0.0f, 0.0f};
+            const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular) : (vec3){0.0f, 0.0f, 0.0f};
             power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
             d = cosine_lobe(s.face, u, v);
             o = s.position;

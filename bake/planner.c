@@ -171,6 +171,14 @@ static double lit_area(const reach *r) {
     return lit > 0 ? lit : r->area;
 }
 
+/* Is there a photon path of any light? */
+static bool has_paths(const tracks *t, const plan *p) {
+    bool some = p->scene.paths > 0 || p->area_paths > 0 || p->sky_paths > 0;
+    for (uint32_t i = 0; i < t->light_count; i++)
+        some = some || p->baked_paths[i] > 0;
+    return some;
+}
+
 vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, const sky *round,
                      unsigned threads, plan *out, vit_text *why) {
     memset(out, 0, sizeof *out);
@@ -244,6 +252,8 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     effects_force(s, c, &out->effects);
     out->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? out->area_paths : 0;
     out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
+    if (!has_paths(t, out)) /* its sources were left out */
+        effects_drop(c, VIT_BIT(PHOTONS));
     if (c->effects & VIT_BIT(PHOTONS)) {
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;

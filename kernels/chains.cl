@@ -1,7 +1,8 @@
 /* Pass 2 with mirrors or glass: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
  * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel part as
- * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. A chain
- * that has not ended by then ends in the sky: light that is caught in glass loses nothing under an even sky. */
+ * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. What is
+ * caught in glass or between panes leaves with the chain's last ray, straight on where it cannot be refracted. A chain that does not end on a matt surface
+ * or in the sky is black. */
 #if VIT_WITH(CHAINS)
 /* Lanes whose triangle's material is a mirror or glass. */
 static inline li chain_goes_on(global const vit_attributes *attributes, global const vit_material *materials, li hit, li triangle)
@@ -41,14 +42,15 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         if (VIT_EFFECT_GLASS && l_any(glass)) {
             li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
             shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
-            li forks = glass & ~splits & L_LT(p.mirror, L_F(1)), mirrored = glass & L_GT(p.mirror, L_F(0.5f));
+            li leaves = i + 1 == scene->chain ? inside | (glass & thin) : L_I(0), caught = leaves & L_GE(p.mirror, L_F(1));
+            li forks = glass & ~splits & ~caught & L_LT(p.mirror, L_F(1)), mirrored = glass & ~leaves & L_GT(p.mirror, L_F(0.5f));
             mirrored = l_sel_i(forks, L_NE(layer, L_I(0)), mirrored);
             lf part = l_sel(forks, l_sel(mirrored, p.mirror, 1.0f - p.mirror), L_F(1));
             li through = glass & ~mirrored;
             splits |= forks;
             weight = lv3_sel(inside, shine_left(weight, s.shine.absorption, t), weight);
             weight = lv3_scale(weight, l_sel(glass, part, L_F(1)));
-            next = lv3_sel(through, p.refracted, lv3_sel(glass, p.mirrored, next));
+            next = lv3_sel(through, lv3_sel(caught, d, p.refracted), lv3_sel(glass, p.mirrored, next));
             from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
             tint = lv3_sel(glass & mirrored, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
         }
@@ -66,7 +68,9 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         triangle = l_sel_i(going, found, triangle);
         going = chain_goes_on(attributes, materials, going & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
     }
-    triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle); /* what still goes on */
+    /* What still goes on is black, and hits nothing. */
+    triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle);
+    weight = lv3_sel(going, lv3_set(L_F(0), L_F(0), L_F(0)), weight);
     L_STORE(L_AS_UINT(triangle), hit_triangle + first);
     L_STORE(t, hit_distance + first);
     lv3_store_planes(o, rays, n, first);

@@ -14,7 +14,7 @@ $(B)/tests/host_lab.o: CFLAGS_ALL += -I$(B)
 $(B)/tests/host_lab.o: $(B)/host_labs.h
 $(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_kernels.c $(B)/kernel_list.h
 	@mkdir -p $(@D)
-	$(CC) $(HOST_CFLAGS) $(if $(filter release,$(config)),-O2) -Wno-unused-function -Wno-unused-variable $(HOST_FLAGS_$*) -DVIT_LANES=8 -DHOST_ISA='"$*"' -DHOST_LAB=host_lab_$* -c $< -o $@
+	$(CC) $(if $(filter release,$(config)),-O2) $(HOST_CFLAGS) -Wno-unused-function -Wno-unused-variable $(HOST_FLAGS_$*) -DVIT_LANES=8 -DHOST_ISA='"$*"' -DHOST_LAB=host_lab_$* -c $< -o $@
 
 NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
 $(NUMERIC_PROGRAMS): $(HOST_LAB)

@@ -34,7 +34,7 @@ static bool open_area(wide_lights *e) {
         return true;
     e->triangles = calloc(e->count, sizeof *e->triangles);
     e->ends = calloc(e->count, sizeof *e->ends);
-    e->density = calloc(s->triangle_count, sizeof *e->density);
+    e->density = calloc((size_t)s->triangle_count + 1, sizeof *e->density);
     if (!e->triangles || !e->ends || !e->density)
         return false;
     for (uint32_t i = 0, k = 0; i < s->triangle_count; i++)

@@ -353,6 +353,41 @@ static void effects_can_be_forced_on_and_off(void **state) {
     assert_memory_equal(listed.hash, none.hash, sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
 }
 
+static void sources_that_are_left_out_give_no_photons(void **state) {
+    scene_lab *l = *state;
+    size_t size;
+    bake(l, "", "emission = [9.0, 8.0, 7.0];", "", "effects = [];", "", false);
+    void *bytes = load(l, &size);
+    const played dark = play(bytes, size);
+    free(bytes);
+    assert_int_equal(dark.need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(EMISSION)), 0);
+    assert_true(scene_lab_said(l, "warning: area-lights is left out: material 'thing' (10 triangles)"));
+}
+
+static void cut_outs_that_are_left_out_are_warned_of(void **state) {
+    scene_lab *l = *state;
+    bake(l, LAMP, "texture = \"holes.tga\"; cutoff = 0.5;", "", "effects = [\"textures\"];", "", false);
+    assert_true(scene_lab_said(l, "warning: cutout is left out: material 'thing' (10 triangles), visible in all frames"));
+    bake(l, LAMP, "", "", "sky: { image = \"sky.tga\"; light = false; }; effects = [];", "", false);
+    assert_true(scene_lab_said(l, "warning: sky-image is left out: the sky, visible in all frames"));
+}
+
+/* With gloss in the program a mirror that is left out is still matt, not a lobe of what it would reflect. */
+static void a_mirror_that_is_left_out_does_not_shine(void **state) {
+    scene_lab *l = *state;
+    size_t size;
+    uint64_t hash[2][FRAMES];
+    for (int i = 0; i < 2; i++) {
+        bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", i ? "effects = [\"gloss\"];" : "effects = [];", "", false);
+        void *bytes = load(l, &size);
+        const played p = play(bytes, size);
+        assert_int_equal(p.need.effects & EFFECTS_NAMED, i ? VIT_BIT(GLOSS) : 0);
+        memcpy(hash[i], p.hash, sizeof hash[i]);
+        free(bytes);
+    }
+    assert_memory_equal(hash[0], hash[1], sizeof hash[0]);
+}
+
 /* Photons of a still light are traced while baking. */
 static void caustics_of_still_lights_are_called_for_too(void **state) {
     scene_lab *l = *state;
@@ -398,6 +433,9 @@ int main(void) {
         cmocka_unit_test(bent_normals_call_for_smooth_ones),
         cmocka_unit_test(effects_can_be_forced_on_and_off),
         cmocka_unit_test(caustics_of_still_lights_are_called_for_too),
+        cmocka_unit_test(sources_that_are_left_out_give_no_photons),
+        cmocka_unit_test(cut_outs_that_are_left_out_are_warned_of),
+        cmocka_unit_test(a_mirror_that_is_left_out_does_not_shine),
         cmocka_unit_test(mirrors_and_glass_are_left_out_one_by_one),
     };
     return cmocka_run_group_tests_name("effect scenes", tests, scene_lab_set_up, scene_lab_tear_down);

@@ -8,7 +8,7 @@ for f in "$from"/test_*.csv; do
     name=$(basename "$f" .csv)
     case $name in
     *.*) # a sweep: log-log, zeros at the foot
-        xlabel=$(head -n 1 "$f" | cut -d, -f1) ylabel=$(head -n 1 "$f" | cut -d, -f2)
+        xlabel=$(head -n 1 "$f" | cut -d, -f1 | sed "s/'/''/g") ylabel=$(head -n 1 "$f" | cut -d, -f2 | sed "s/'/''/g")
         foot=$(awk -F, 'NR > 1 && $2 > 0 && (!m || $2 < m) { m = $2 } END { print m ? m / 10 : 1e-6 }' "$f")
         gnuplot -d <<PLOT
 set terminal svg size 640,420 dynamic background '#fcfcfb'

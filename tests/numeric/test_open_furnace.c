@@ -51,6 +51,11 @@ static void render(scene_lab *l, const char *material, int samples, float *pixel
     scene_lab_play(l, "final", pixels, FLOATS);
 }
 
+/* Also what is no number. */
+static double larger(double worst, double error) {
+    return error <= worst ? worst : error;
+}
+
 /* Cosine between the ball's normal and the way to the eye at a pixel; 0 outside and near the silhouette. */
 static double pixel_cosine(int i) {
     const double edge = tan(15 * PI / 180), x = edge * ((2 * (i % SIDE) + 1.0) / SIDE - 1), y = edge * ((2 * (i / SIDE) + 1.0) / SIDE - 1);
@@ -121,20 +126,22 @@ static void white_paint_and_lobes_give_back_what_they_should(void **state) {
 static void mirrors_and_glass_cannot_be_told_from_the_sky(void **state) {
     static const struct {
         const char *name, *material;
-    } balls[] = {{"mirror", "kind = \"mirror\"; specular = [1.0, 1.0, 1.0];"},
-                 {"glass", "kind = \"glass\"; ior = 1.5;"},
-                 {"diamond", "kind = \"glass\"; ior = 2.4;"},
-                 {"water", "kind = \"glass\"; ior = 1.333;"},
-                 {"thin glass", "kind = \"thin_glass\"; ior = 1.5;"}};
+        double left; /* of the sky's radiance */
+    } balls[] = {{"mirror", "kind = \"mirror\"; specular = [1.0, 1.0, 1.0];", 1},
+                 {"half a mirror", "kind = \"mirror\"; specular = [0.5, 0.5, 0.5];", 0.5},
+                 {"glass", "kind = \"glass\"; ior = 1.5;", 1},
+                 {"diamond", "kind = \"glass\"; ior = 2.4;", 1},
+                 {"water", "kind = \"glass\"; ior = 1.333;", 1},
+                 {"thin glass", "kind = \"thin_glass\"; ior = 1.5;", 1}};
     static float pixels[FLOATS];
     for (size_t k = 0; k < sizeof balls / sizeof *balls; k++) {
         double worst = 0;
         render(*state, balls[k].material, 1, pixels);
         for (int i = 0; i < SIDE * SIDE; i++)
-            for (int c = 0; c < 3; c++)
-                worst = fmax(worst, fabs((double)pixels[4 * i + c] - 1));
+            for (int c = 0; c < 3 && (balls[k].left == 1 || pixel_cosine(i) > 0); c++)
+                worst = larger(worst, fabs((double)pixels[4 * i + c] - balls[k].left));
         char what[96];
-        (void)snprintf(what, sizeof what, "%s: worst pixel against the sky", balls[k].name);
+        (void)snprintf(what, sizeof what, "%s: worst pixel against what it leaves of the sky", balls[k].name);
         catalogue_row("open furnace", what, worst, 1e-6, "W/(m2 sr)");
     }
 }
@@ -150,7 +157,7 @@ static void glass_absorbs_along_the_way(void **state) {
     const double mirrored = 0.04; /* ((1.5 - 1) / (1.5 + 1))^2 */
     double worst = 0;
     for (int c = 0; c < 3; c++)
-        worst = fmax(worst, fabs(middle[c] / (mirrored + (1 - mirrored) * exp(-2 * 0.5 * (1 << c))) - 1));
+        worst = larger(worst, fabs(middle[c] / (mirrored + (1 - mirrored) * exp(-2 * 0.5 * (1 << c))) - 1));
     catalogue_row("open furnace", "absorbing glass: its middle against exp(-2 a)", worst, 5e-3, "relative");
 }
 
@@ -187,7 +194,7 @@ static void glass_on_a_floor_is_glass_just_above_it(void **state) {
     render_block(*state, 0.0, on);
     render_block(*state, 0.001, above);
     for (int i = 0; i < SIDE * SIDE; i++)
-        differ += fabs((double)on[4 * i + 2] - (double)above[4 * i + 2]) > 0.05;
+        differ += !(fabs((double)on[4 * i + 2] - (double)above[4 * i + 2]) <= 0.05);
     catalogue_row("open furnace", "a block of glass on a floor: pixels unlike those of one 1 mm above", (double)differ / (SIDE * SIDE), 0.01, "of all");
 }
 

@@ -80,6 +80,22 @@ static void small_triangles_keep_their_way_round(void **unused) {
     assert_true(position[0] > 0.0f);
 }
 
+/* A face of 2 m x 2 m by a needle of two triangles 1 mm high. */
+static void needles_keep_their_way_round(void **unused) {
+    (void)unused;
+    model m = box(2.0);
+    for (int i = 0; i < VERTICES; i++)
+        position[3 * i + 1] *= 0.0005f;
+    memcpy(before, position, sizeof before);
+    assert_true(glass_gap(&m, 0.01f));
+    for (uint32_t t = 0; t < TRIANGLES - 2; t++) {
+        double a[3], b[3];
+        normal_of(before, t, a);
+        normal_of(position, t, b);
+        assert_true(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0.25 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
+    }
+}
+
 static void what_is_no_glass_does_not_move(void **unused) {
     static const uint32_t kinds[] = {VIT_MATTE, VIT_MIRROR, VIT_THIN_GLASS};
     (void)unused;
@@ -93,6 +109,7 @@ static void what_is_no_glass_does_not_move(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(each_face_of_a_box_moves_in_by_the_gap), cmocka_unit_test(a_closed_body_stays_closed),
-                                       cmocka_unit_test(small_triangles_keep_their_way_round), cmocka_unit_test(what_is_no_glass_does_not_move)};
+                                       cmocka_unit_test(small_triangles_keep_their_way_round), cmocka_unit_test(needles_keep_their_way_round),
+                                       cmocka_unit_test(what_is_no_glass_does_not_move)};
     return cmocka_run_group_tests_name("glass gap", tests, NULL, NULL);
 }
