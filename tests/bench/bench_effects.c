@@ -15,6 +15,8 @@ enum { WIDTH = 320, HEIGHT = 240, EVERY = 5 /* no multiple of the sets of points
 #define LAMP "{ type = \"point\"; keys = ( { position = [0.2, 1.9, 0.9]; power = [30.0, 28.0, 24.0]; } ); }"
 /* Behind the glass ball. Its photons are traced while playing, as those of lights that stand still are not. */
 #define MOVING "{ type = \"point\"; keys = ( { position = [0.6, 1.3, -0.8]; power = [30.0, 28.0, 24.0]; }, { time = 1.0; position = [0.6, 1.2, -0.8]; } ); }"
+#define SPOTLIGHT "{ type = \"spot\"; inner = 20.0; outer = 35.0; keys = ( { position = [0.2, 1.9, 0.9]; target = [0.0, 0.3, 0.2]; power = [30.0, 28.0, 24.0]; } ); }"
+#define RANGED "{ type = \"point\"; range = 2.5; keys = ( { position = [0.2, 1.9, 0.9]; power = [30.0, 28.0, 24.0]; } ); }"
 #define SUN "{ type = \"directional\"; keys = ( { position = [0.5, 1.6, 2.0]; target = [0.0, 0.5, 0.0]; irradiance = [4.0, 3.8, 3.2]; } ); }"
 #define MATT "{ name = \"left\"; color = [0.6, 0.3, 0.2]; }, { name = \"right\"; color = [0.2, 0.4, 0.6]; }"
 #define ROWS(X)                                                                                                                \
@@ -27,6 +29,11 @@ enum { WIDTH = 320, HEIGHT = 240, EVERY = 5 /* no multiple of the sets of points
     X(GLASS, LAMP, "{ name = \"right\"; kind = \"glass\"; ior = 1.5; absorption = [0.6, 0.3, 0.1]; }", "", "caustics = false;")    \
     X(CAUSTICS, MOVING, "{ name = \"right\"; kind = \"glass\"; ior = 1.5; }", "", "photons = 100000; radius = 0.06; indirect_samples = 1;") \
     X(AREA_LIGHTS, "", MATT ", { name = \"lamp\"; emission = [20.0, 18.0, 15.0]; area_light = true; }", "", "")                    \
+    X(CUTOUT, LAMP, MATT ", { name = \"floor\"; texture = \"holes.tga\"; cutoff = 0.5; }", "", "")                               \
+    X(EMISSION, LAMP, MATT ", { name = \"lamp\"; emission = [2.0, 1.8, 1.5]; area_light = false; }", "", "")                      \
+    X(SPOT, SPOTLIGHT, MATT, "", "")                                                                                           \
+    X(RANGE, RANGED, MATT, "", "")                                                                                             \
+    X(SKY_IMAGE, LAMP, MATT, "sky: { image = \"sky.tga\"; light = false; };", "")                                              \
     X(DIRECTIONAL, SUN, MATT, "", "")                                                                                          \
     X(SKY_LIGHT, "", MATT, "background = [0.8, 1.0, 1.3]; sky: { light = true; };", "")                                         \
     X(AMBIENT, LAMP, MATT, "ambient = [0.1, 0.1, 0.12];", "")                                                                  \
@@ -88,6 +95,19 @@ static void write_meshes(void) {
     fclose(f);
     f = create("room.mtl");
     fputs("newmtl floor\nKd 0.7 0.7 0.7\nnewmtl wall\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 0.1\nnewmtl green\nKd 0.1 0.5 0.1\nnewmtl lamp\nKd 0.5 0.5 0.5\n", f);
+    fclose(f);
+}
+
+/* A picture of 4 bytes a texel: bluish above and brown below, every other one a hole. */
+static void write_picture_file(const char *name, int width, int height) {
+    const unsigned char header[18] = {[2] = 2, [12] = (unsigned char)width, [14] = (unsigned char)height, [16] = 32, [17] = 0x28};
+    FILE *f = create(name);
+    fwrite(header, 1, sizeof header, f);
+    for (int i = 0; i < width * height; i++) {
+        const bool above = i < width * height / 2, hole = (i + i / width) % 2;
+        const unsigned char texel[4] = {above ? 220 : 60, above ? 170 : 90, above ? 140 : 120, hole ? 0 : 255};
+        fwrite(texel, 1, sizeof texel, f);
+    }
     fclose(f);
 }
 
@@ -177,7 +197,8 @@ static void run(csv *c, size_t i) {
     TRY(pipeline_pack(&p, &choice, &packed, &why));
     if (!(packed.plan.scene.effects & rows[i].effect))
         bench_fail("%s: its scene does not call for it: %s", rows[i].name, FOLDER "/scene.cfg");
-    const uint64_t dropped = rows[i].effect | (rows[i].effect & VIT_BIT(DIRECTIONAL) ? VIT_BIT(LIGHTS) : 0); /* the scene's only light */
+    const uint64_t lamps = VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(DIRECTIONAL); /* the scene's only light is such a one */
+    const uint64_t dropped = rows[i].effect | (rows[i].effect & lamps ? VIT_BIT(LIGHTS) : 0);
     size_t less_size;
     void *less = NULL;
     TRY(adds_without(&packed.sections, dropped, &less, &less_size, &why));
@@ -233,6 +254,8 @@ int main(int argc, char **argv) {
     csv c = csv_open("effects");
     bench_folder(FOLDER);
     write_meshes();
+    write_picture_file("holes.tga", 8, 8);
+    write_picture_file("sky.tga", 64, 32);
     FILE *wood = fopen(VIT_BUILD_DIR "/scenes/wood.png", "rb"), *copy = create("wood.png");
     for (int byte; wood && (byte = fgetc(wood)) != EOF;)
         fputc(byte, copy);
