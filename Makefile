@@ -63,12 +63,12 @@ HOST_LANES := 1 $(if $(filter fuzz,$(config)),,8)
 HOST_ISAS := baseline
 endif
 HOST_PROGRAMS := $(foreach i,$(HOST_ISAS),$(foreach l,$(HOST_LANES),$(i)_$(l)))
-# Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
-# are not looked at, and records are read as other types.
 # What people play with is optimised; the other widths are there to be compared, and compile for half a minute each if they are. GCC by itself stops
 # inlining after the first few kernels; calls then cost a third of the time, since no vector register survives them.
 HOST_FAST := %_1 avx512_8 avx512_16 avx2_8 $(if $(filter x86_64-%,$(MACHINE)),,%)
 HOST_OPT := -O3 $(if $(shell $(CC) --version 2>/dev/null | grep 'Free Software Foundation'),--param inline-unit-growth=400 --param large-function-growth=1000 --param large-stack-frame-growth=10000)
+# Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
+# are not looked at, and records are read as other types.
 HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -fno-math-errno \
                -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)

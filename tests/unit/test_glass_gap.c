@@ -44,6 +44,17 @@ static void normal_of(const float *p, uint32_t triangle, double n[3]) {
         n[k] = (double)f[k];
 }
 
+/* All glass triangles still look the way that they did, and are not much smaller. */
+static void draw_in_without_turning(model *m) {
+    assert_true(glass_gap(m, 0.01f));
+    for (uint32_t t = 0; t < TRIANGLES - 2; t++) {
+        double a[3], b[3];
+        normal_of(before, t, a);
+        normal_of(position, t, b);
+        assert_true(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0.25 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
+    }
+}
+
 static void each_face_of_a_box_moves_in_by_the_gap(void **unused) {
     (void)unused;
     model m = box(2.0);
@@ -70,13 +81,7 @@ static void a_closed_body_stays_closed(void **unused) {
 static void small_triangles_keep_their_way_round(void **unused) {
     (void)unused;
     model m = box(0.001); /* the gap is 15 times as large */
-    assert_true(glass_gap(&m, 0.01f));
-    for (uint32_t t = 0; t < TRIANGLES - 2; t++) {
-        double a[3], b[3];
-        normal_of(before, t, a);
-        normal_of(position, t, b);
-        assert_true(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0.25 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
-    }
+    draw_in_without_turning(&m);
     assert_true(position[0] > 0.0f);
 }
 
@@ -87,13 +92,7 @@ static void needles_keep_their_way_round(void **unused) {
     for (int i = 0; i < VERTICES; i++)
         position[3 * i + 1] *= 0.0005f;
     memcpy(before, position, sizeof before);
-    assert_true(glass_gap(&m, 0.01f));
-    for (uint32_t t = 0; t < TRIANGLES - 2; t++) {
-        double a[3], b[3];
-        normal_of(before, t, a);
-        normal_of(position, t, b);
-        assert_true(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > 0.25 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
-    }
+    draw_in_without_turning(&m);
 }
 
 static void what_is_no_glass_does_not_move(void **unused) {
