@@ -40,14 +40,15 @@ static uint32_t share(const scene *s, double power, double total) {
     return power > 0 ? (uint32_t)ceil(s->quality.photons * (power / total) / PACKET) * PACKET : 0;
 }
 
-static vit_status share_paths(const scene *s, tracks *t, const sky *round, plan *p, vit_text *why) {
+/* Nobody gets paths where no surface could store a photon. */
+static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, plan *p, vit_text *why) {
     const double area = sum_of(p->area.flux) / TWO_PI;
     const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
     uint32_t first = 0;
     for (uint32_t i = 0; i < t->light_count; i++)
         total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
-    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0))
+    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0) || !(r->area > 0))
         return VIT_OK;
     p->area_paths = share(s, area, total);
     p->sky_paths = share(s, above, total);
@@ -227,7 +228,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius);
     vit_status status = emitters_find(&lit, threads, &out->area, why);
     if (status == VIT_OK)
-        status = share_paths(s, t, round, out, why);
+        status = share_paths(s, t, round, r, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;

@@ -305,6 +305,13 @@ static void flag_dark_sides(const search *s, reach *out) {
     }
 }
 
+static bool any_matt(const search *s) {
+    for (uint32_t side = 0; side < s->sides; side += 2)
+        if (is_matt(s, side))
+            return true;
+    return false;
+}
+
 /* The tracks' lights shine in some frame. */
 static bool any_shines(const tracks *t, uint32_t frames) {
     for (size_t i = 0; i < (size_t)frames * t->light_count; i++)
@@ -373,7 +380,7 @@ vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bo
     sky_sphere(m->lo, m->hi, center, &s.radius);
     s.center = vec_of(center);
     vit_status status = VIT_OK;
-    if (fine && !sky_light && s.lamp_count == 0 && !any_shines(t, frames)) {
+    if (fine && (!any_matt(&s) || (!sky_light && s.lamp_count == 0 && !any_shines(t, frames)))) {
         release(&s);
         return VIT_OK;
     }

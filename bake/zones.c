@@ -87,14 +87,14 @@ void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_
     grid_rows(g, p, reach, each_item, &e);
 }
 
-uint32_t grid_align(grid *g, uint32_t width) {
+bool grid_align(grid *g, uint32_t width, uint32_t *slots) {
     const size_t boxes = (size_t)g->nx * (size_t)g->ny * (size_t)g->nz;
     size_t count = 0;
     for (size_t b = 0; b < boxes; b++)
         count += (g->start[b + 1] - g->start[b] + width - 1) / width * width;
     uint32_t *item = count < VIT_NONE ? malloc((count + 1) * sizeof *item) : NULL;
     if (!item)
-        return 0;
+        return false;
     uint32_t at = 0;
     for (size_t b = 0; b < boxes; b++) {
         const uint32_t begin = g->start[b], end = g->start[b + 1];
@@ -107,7 +107,8 @@ uint32_t grid_align(grid *g, uint32_t width) {
     g->start[boxes] = at;
     free(g->item);
     g->item = item;
-    return at;
+    *slots = at;
+    return true;
 }
 
 float zones_kernel(const zones *z, vec3 p, vec3 n, vec3 q) {

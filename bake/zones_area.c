@@ -114,8 +114,10 @@ static void fill_cell(void *user, uint32_t i) {
 
 static bool make_blocks(areas *a) {
     const zones *z = a->z;
-    const uint32_t slots = grid_align(&a->points, WIDTH);
-    a->blocks = slots ? aligned_alloc(sizeof(wide), (size_t)(slots / WIDTH + 1) * sizeof *a->blocks) : NULL;
+    uint32_t slots; /* none where no light reaches what the path sees */
+    if (!grid_align(&a->points, WIDTH, &slots))
+        return false;
+    a->blocks = aligned_alloc(sizeof(wide), (size_t)(slots / WIDTH + 1) * sizeof *a->blocks);
     if (!a->blocks)
         return false;
     for (uint32_t i = 0; i < slots; i++) {

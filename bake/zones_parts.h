@@ -85,8 +85,9 @@ void grid_free(grid *g);
  * each. */
 void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t item), void *user);
 void grid_rows(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t begin, uint32_t end), void *user);
-/* Lets every box begin at a multiple of `width` items; the gaps are VIT_NONE. Returns the number of items; 0: out of memory. */
-uint32_t grid_align(grid *g, uint32_t width);
+/* Lets every box begin at a multiple of `width` items; the gaps are VIT_NONE. *slots: items then, 0 if there are none. False: out of
+ * memory. */
+bool grid_align(grid *g, uint32_t width, uint32_t *slots);
 
 /* Kernel (1 - d^2 / r^2) of a sample at p with normal n for a point at q; 0 outside. */
 float zones_kernel(const zones *z, vec3 p, vec3 n, vec3 q);
