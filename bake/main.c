@@ -34,12 +34,23 @@ static void warn_of_missed_effects(bake *b) {
             progress_line(&b->progress, true, "warning: %s is left out: %s", effects_name(bit), e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
 }
 
+static bool fits(const options *o) {
+    return o->fit > 0 || o->fit_work > 0;
+}
+
+/* The device whose frames --fit times. OpenCL is looked at only if there is something to time. */
+static uint32_t played_on(const options *o) {
+    if (o->device_given)
+        return o->device;
+    return o->fit > 0 ? vit_device_default() : VIT_DEVICE_HOST;
+}
+
 static vit_status make_pack(bake *b, vit_text *why) {
     pipeline *p = &b->pipeline;
     p->strict = b->options.strict;
     p->all_formats = b->options.all_formats;
     p->threads = b->options.threads;
-    p->device = b->options.device_given ? b->options.device : vit_device_default();
+    p->device = b->options.device_given && !fits(&b->options) ? b->options.device : VIT_DEVICE_HOST;
     p->progress = &b->progress;
     vit_status status = pipeline_read(b->options.input, &p->scene, why);
     if (status == VIT_OK)
@@ -50,8 +61,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
     const pipeline_choice asked = pipeline_default(p);
-    if (budget.ms > 0 || budget.work > 0)
-        status = fit_pack(p, &budget, &b->packed, why);
+    if (fits(&b->options))
+        status = fit_pack(p, played_on(&b->options), &budget, &b->packed, why);
     else
         status = pipeline_pack(p, &asked, &b->packed, why);
     if (status != VIT_OK)

@@ -20,7 +20,8 @@ typedef struct pipeline {
     bool strict;      /* a missing texture is an error */
     bool all_formats; /* golden hashes of RGB565 and RGBA32F frames too */
     unsigned threads; /* 0: all cores; changes no byte */
-    uint32_t device;  /* measures bounds and hashes, as in vit_open_info; changes no byte */
+    uint32_t
+        device; /* measures bounds and hashes, as in vit_open_info; changes no byte. VIT_DEVICE_HOST has nothing to compile */
     progress *progress;
     model model;   /* made by pipeline_load() from here on */
     tracks tracks; /* at the scene's own size */

@@ -16,6 +16,7 @@
 
 #define TOOL_BAKE VIT_BUILD_DIR "/vitrine-bake"
 #define TOOL_PLAY VIT_BUILD_DIR "/vitrine-play"
+#define TOOL_COST VIT_BUILD_DIR "/vitrine-cost"
 
 enum { TOOL_TEXT = 1 << 16, TOOL_WORDS = 48, TOOL_SECONDS = 600 }; /* a program that hangs is killed by its alarm */
 

@@ -45,7 +45,7 @@ static const option options[] = {
      "for packs, and for what is open at once (default: a quarter of the machine's)"},
     {"--threads", "N", WHOLE, AT(threads), 0, 1024, "of baker and reference (default 0: all cores); changes no bit"},
     {"--device", "N|host", DEVICE, AT(device), 0, 1023,
-     "what is measured: an OpenCL device, or the built-in one (default 0, or host if there is no OpenCL)"},
+     "plays what is timed: an OpenCL device, or the built-in one (default 0, or host if there is no OpenCL)"},
     {"--strict", NULL, FLAG, AT(strict), 0, 0, "a missing texture is an error, not a warning"},
     {"--quiet", NULL, FLAG, AT(quiet), 0, 0, "warnings and errors only"},
     {"--version", NULL, FLAG, AT(version), 0, 0, ""},

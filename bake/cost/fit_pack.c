@@ -7,14 +7,15 @@
 #include <string.h>
 
 /* 95th percentile of the milliseconds of all frames, each played at least once and at least SWEEP_LEAST_REPEATS in all. */
-static vit_status measure(const pipeline *p, const pipeline_packed *packed, const char *name, double *p95, vit_text *why) {
+static vit_status measure(const pipeline *p, uint32_t device, const pipeline_packed *packed, const char *name, double *p95,
+                          vit_text *why) {
     const uint32_t frames = packed->plan.scene.frames, repeats = frames > SWEEP_LEAST_REPEATS ? frames : SWEEP_LEAST_REPEATS;
     timing_entry e = {.name = name,
                       .pack = packed->bytes,
                       .pack_size = packed->size,
                       .ms = calloc(repeats, sizeof(double)),
                       .pass_ms = calloc((size_t)repeats * VIT_MAX_PASSES, sizeof(double))};
-    const timing_input in = {.entries = &e, .count = 1, .device = p->device, .repeats = repeats};
+    const timing_input in = {.entries = &e, .count = 1, .device = device, .repeats = repeats};
     vit_status status = VIT_FAILED;
     progress_stage(p->progress, "the budget, on all frames");
     if (e.ms && e.pass_ms)
@@ -30,8 +31,8 @@ static vit_status measure(const pipeline *p, const pipeline_packed *packed, cons
 }
 
 /* Packs setting `chosen`. *holds: it keeps the budget on all frames; if not, its measured time replaces that of the sweep. */
-static vit_status try_setting(pipeline *p, const fit_budget *b, cost_setting *chosen, pipeline_packed *out, bool *holds,
-                              vit_text *why) {
+static vit_status try_setting(pipeline *p, uint32_t device, const fit_budget *b, cost_setting *chosen, pipeline_packed *out,
+                              bool *holds, vit_text *why) {
     *holds = true;
     vit_status status = sweep_quality(chosen, &p->scene.quality, why);
     const pipeline_choice choice = pipeline_default(p);
@@ -40,7 +41,7 @@ static vit_status try_setting(pipeline *p, const fit_budget *b, cost_setting *ch
     if (status != VIT_OK || !(b->ms > 0))
         return status;
     double p95 = 0;
-    status = measure(p, out, chosen->name, &p95, why);
+    status = measure(p, device, out, chosen->name, &p95, why);
     *holds = status == VIT_OK && p95 <= b->ms;
     if (status == VIT_OK && !*holds) {
         progress_line(p->progress, false, "%s: %.2f ms (95th percentile) on all frames, too long", chosen->name, p95);
@@ -52,7 +53,8 @@ static vit_status try_setting(pipeline *p, const fit_budget *b, cost_setting *ch
     return status;
 }
 
-static vit_status choose(pipeline *p, const fit_budget *b, cost_results *r, pipeline_packed *out, vit_text *why) {
+static vit_status choose(pipeline *p, uint32_t device, const fit_budget *b, cost_results *r, pipeline_packed *out,
+                         vit_text *why) {
     for (bool holds = false;;) {
         uint32_t chosen;
         vit_status status = fit_choose(r, b, &chosen, why);
@@ -60,7 +62,7 @@ static vit_status choose(pipeline *p, const fit_budget *b, cost_results *r, pipe
             fit_print(r, b, r->count, stdout);
             return status;
         }
-        status = try_setting(p, b, &r->settings[chosen], out, &holds, why);
+        status = try_setting(p, device, b, &r->settings[chosen], out, &holds, why);
         if (status != VIT_OK)
             return status;
         if (holds) {
@@ -71,10 +73,11 @@ static vit_status choose(pipeline *p, const fit_budget *b, cost_results *r, pipe
     }
 }
 
-vit_status fit_pack(pipeline *p, const fit_budget *budget, pipeline_packed *out, vit_text *why) {
+vit_status fit_pack(pipeline *p, uint32_t device, const fit_budget *budget, pipeline_packed *out, vit_text *why) {
     char folder[4096];
     cost_results results;
     const sweep_input in = {.pipeline = p,
+                            .device = device,
                             .settings = SWEEP_SETTINGS,
                             .frame = -1,
                             .repeats = budget->ms > 0 ? SWEEP_REPEATS : 0,
@@ -84,7 +87,7 @@ vit_status fit_pack(pipeline *p, const fit_budget *budget, pipeline_packed *out,
     memset(out, 0, sizeof *out);
     vit_status status = sweep_run(&in, &results, why);
     if (status == VIT_OK)
-        status = choose(p, budget, &results, out, why);
+        status = choose(p, device, budget, &results, out, why);
     sweep_free(&results);
     return status;
 }

@@ -25,10 +25,17 @@ static void catch_signals(void) {
     (void)sigaction(SIGTERM, &stop, NULL);
 }
 
+/* The device whose frames are timed. OpenCL is looked at only if there is something to time. */
+static uint32_t played_on(const cost_options *o) {
+    if (o->device_given)
+        return o->device;
+    return o->output || o->fit > 0 ? vit_device_default() : VIT_DEVICE_HOST;
+}
+
 static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
     p->strict = o->strict;
     p->threads = o->threads;
-    p->device = o->device_given ? o->device : vit_device_default();
+    p->device = VIT_DEVICE_HOST;
     vit_status status = pipeline_read(o->input, &p->scene, why);
     if (status != VIT_OK)
         return status;
@@ -64,6 +71,7 @@ static vit_status converge(const cost_options *o, const sweep_input *in, vit_tex
 static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_text *why) {
     char folder[4096];
     const sweep_input in = {.pipeline = p,
+                            .device = played_on(o),
                             .knobs = o->knobs,
                             .settings = o->settings,
                             .frame = o->frame,

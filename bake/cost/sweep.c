@@ -164,7 +164,7 @@ static void describe(sweep *s) {
     const pipeline *p = s->in->pipeline;
     cost_results *r = s->out;
     vit_text text;
-    const char *device = vit_device_name(p->device, &text),
+    const char *device = vit_device_name(s->in->device, &text),
                *name = p->scene.name[0] ? p->scene.name : strrchr(p->scene.path, '/');
     (void)snprintf(r->scene, sizeof r->scene, "%.*s", COST_NAME - 1, name ? name + (*name == '/') : p->scene.path);
     (void)snprintf(r->device, sizeof r->device, "%.*s", (int)sizeof r->device - 1, device ? device : "");

@@ -20,7 +20,8 @@ typedef vit_status sweep_list_fn(const void *user, const scene_quality *base, do
                                  vit_text *why);
 
 typedef struct sweep_input {
-    pipeline *pipeline; /* loaded; its device and threads are used */
+    pipeline *pipeline; /* loaded; its device and threads make packs, pictures and counts */
+    uint32_t device;    /* that times are measured on */
     const char *knobs;  /* names with commas between; NULL: all */
     uint32_t settings;  /* at most, the default included; >= 1 */
     int64_t frame;      /* of the scene's path, compared with the reference; < 0: the middle one */

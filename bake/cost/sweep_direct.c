@@ -58,8 +58,11 @@ vit_status sweep_direct(sweep *s, uint32_t i, const float **image, vit_text *why
     }
     s->direct_count++; /* freed with the others from now on */
     *image = d->image;
-    const vit_open_info info = {
-        .pack = s->packs[i].bytes, .pack_size = s->packs[i].size, .device = s->in->pipeline->device, .view = VIT_VIEW_direct};
+    const vit_open_info info = {.pack = s->packs[i].bytes,
+                                .pack_size = s->packs[i].size,
+                                .device = s->in->pipeline->device,
+                                .threads = s->in->pipeline->threads,
+                                .view = VIT_VIEW_direct};
     return images_render(&info, s->at, &s->grid, d->image, NULL, why);
 }
 

@@ -52,6 +52,7 @@ static vit_open_info how(const sweep *s, uint32_t i) {
     return (vit_open_info){.pack = s->packs[i].bytes,
                            .pack_size = s->packs[i].size,
                            .device = s->in->pipeline->device,
+                           .threads = s->in->pipeline->threads,
                            .lanes = s->knobs.settings[i].lanes};
 }
 

@@ -118,7 +118,7 @@ static vit_status time_batch(sweep *s, batch *b, tracer *traced, vit_text *why) 
     progress_stage(s->progress, label);
     const timing_input in = {.entries = b->entries,
                              .count = b->count,
-                             .device = s->in->pipeline->device,
+                             .device = s->in->device,
                              .repeats = s->in->repeats,
                              .progress = step,
                              .user = s->progress,

@@ -40,9 +40,7 @@ static void assert_same_files(const char *a, const char *b, const char *line) {
 static void assert_bakes_alike(const char *input, const char *options) {
     static const struct {
         const char *environment, *options;
-    } ways[] = {{"POCL_MAX_PTHREAD_COUNT=1", "--threads 1"},
-                {"POCL_MAX_PTHREAD_COUNT=2", "--threads 2"},
-                {"POCL_DEVICES=basic", "--threads 5"}};
+    } ways[] = {{"", "--threads 1"}, {"", "--threads 3"}, {"POCL_DEVICES=basic", "--threads 2 --device 0"}};
     char path[2][128];
     test_packs_begin();
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {

@@ -10,7 +10,6 @@
 #include <stdbool.h>
 #include <sys/stat.h>
 
-#define TOOL_COST VIT_BUILD_DIR "/vitrine-cost"
 #define LAB VIT_BUILD_DIR "/tests/golden/cost"
 #define SCENE TEST_PACKS "/room.cfg"
 #define MEASURE                                                                                                                \

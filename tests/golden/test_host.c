@@ -45,21 +45,41 @@ static void a_device_or_instruction_set_that_there_is_not_is_refused(void **stat
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "wide_divide");
 }
 
-static void the_baker_makes_the_same_bytes_without_opencl(void **state) {
+static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state) {
+    static const char *const ways[][2] = {{"", "--device 0"}, {NO_OPENCL, ""}};
     (void)state;
-    size_t size[2];
-    void *bytes[2] = {test_packs_load(test_pack("33x47"), &size[0])};
     const size_t i = test_packs_find("33x47");
-    tool(&r, NO_OPENCL TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --threads 3 %s", test_packs[i].input,
-         test_packs[i].options);
-    tool_succeeds(&r);
-    bytes[1] = test_packs_load(TEST_PACKS "/host.vit", &size[1]);
-    assert_int_equal(size[0], size[1]);
-    assert_memory_equal(bytes[0], bytes[1], size[0]);
+    size_t size[2];
+    void *host = test_packs_load(test_pack("33x47"), &size[0]);
+    for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
+        tool(&r, "%s" TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --threads 3 %s %s", ways[k][0], test_packs[i].input,
+             ways[k][1], test_packs[i].options);
+        tool_succeeds(&r);
+        void *other = test_packs_load(TEST_PACKS "/host.vit", &size[1]);
+        assert_int_equal(size[0], size[1]);
+        assert_memory_equal(host, other, size[0]);
+        free(other);
+    }
+    free(host);
     tool(&r, TOOL_BAKE " %s --quiet --device hots -o " TEST_PACKS "/host.vit", test_packs[i].input);
     tool_refuses(&r, "vitrine-bake", VIT_USAGE, "or host");
-    free(bytes[0]);
-    free(bytes[1]);
+}
+
+/* PoCL keeps what it compiles: an empty folder tells that nothing was. */
+static void what_is_not_timed_has_no_kernel_compiled(void **state) {
+    static const char *const lines[] = {
+        TOOL_BAKE " " TEST_PACKS "/room.cfg -o " TEST_PACKS "/host.vit --quiet --all-formats --explain",
+        TOOL_BAKE " " TEST_PACKS "/room.cfg -o " TEST_PACKS "/host.vit --quiet --zones 1 --effective-area 1",
+        TOOL_COST " " TEST_PACKS "/room.cfg --quiet --size 48x32 --fit-work 1e15 --settings 6 --no-cache --max-samples 16"};
+    (void)state;
+    test_packs_begin();
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        char cache[] = "/tmp/vitrine-test-XXXXXX";
+        assert_non_null(mkdtemp(cache));
+        tool(&r, "POCL_CACHE_DIR=%s %s", cache, lines[i]);
+        tool_succeeds(&r);
+        assert_int_equal(rmdir(cache), 0); /* fails if there is anything in it */
+    }
 }
 
 static vit_open_info on_host(vit_open_info how) {
@@ -166,7 +186,8 @@ int main(void) {
         cmocka_unit_test(host_is_listed_with_and_without_opencl),
         cmocka_unit_test(without_opencl_the_player_takes_host_and_says_so),
         cmocka_unit_test(a_device_or_instruction_set_that_there_is_not_is_refused),
-        cmocka_unit_test(the_baker_makes_the_same_bytes_without_opencl),
+        cmocka_unit_test(the_baker_makes_the_same_bytes_with_opencl_and_without),
+        cmocka_unit_test(what_is_not_timed_has_no_kernel_compiled),
         cmocka_unit_test(two_packs_of_other_effects_are_played_in_turns),
         cmocka_unit_test(the_callers_rounding_mode_counts_for_nothing_and_stays),
         cmocka_unit_test(frames_go_where_the_caller_wants_them),
