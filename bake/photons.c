@@ -34,8 +34,7 @@ static float range_factor(const vit_light *light, float d2) {
     const float q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return float_max(1.0f - q, 0.0f) * d2;
-    const float window = float_max(1.0f - q * q, 0.0f);
-    return window * window;
+    return float_max(1.0f - q * q, 0.0f);
 }
 
 /* Path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square. `number`: the path's number among

@@ -20,8 +20,7 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
     lf q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return l_max(1.0f - q, L_F(0));
-    lf window = l_max(1.0f - q * q, L_F(0));
-    return l_div(window * window, d2);
+    return l_div(l_max(1.0f - q * q, L_F(0)), d2);
 }
 
 /* The same times d2: what a range leaves of a photon's power. Exactly 1 without a range. */
@@ -30,8 +29,7 @@ static inline lf light_left(global const vit_light *light, lf d2)
     lf q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return l_max(1.0f - q, L_F(0)) * d2;
-    lf window = l_max(1.0f - q * q, L_F(0));
-    return window * window;
+    return l_max(1.0f - q * q, L_F(0));
 }
 
 /* View samples as lights see them. */

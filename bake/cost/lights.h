@@ -19,8 +19,7 @@ static inline float light_falloff(const vit_light *light, float d2) {
     const float q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return float_max(1.0f - q, 0.0f);
-    const float window = float_max(1.0f - q * q, 0.0f);
-    return window * window / d2;
+    return float_max(1.0f - q * q, 0.0f) / d2;
 }
 
 /* Irradiance, a unit of intensity, at p about the unit normal n if nothing is between; *l: unit, towards the light, *d metres

@@ -18,7 +18,7 @@ typedef struct oracle_blockers {
 
 /* Irradiance at p on a surface of unit normal n, a unit of the light's intensity, if nothing is in the way: 1/m2. */
 static inline double oracle_light(const vit_light *l, const double p[3], const double n[3]) {
-    double to[3], axis[3], window = 1, cone = 1;
+    double to[3], axis[3], cone = 1;
     for (int k = 0; k < 3; k++) {
         to[k] = (double)l->position[k] - p[k];
         axis[k] = (double)l->direction[k];
@@ -26,8 +26,7 @@ static inline double oracle_light(const vit_light *l, const double p[3], const d
     const double d2 = oracle_dot(to, to), d = sqrt(d2), q = d2 * (double)l->inv_range2;
     if (l->kind == VIT_LIGHT_SPOT)
         cone = fmin(fmax(-oracle_dot(to, axis) / d * (double)l->spot_scale + (double)l->spot_offset, 0), 1);
-    window = fmax(1 - q * q, 0);
-    const double falloff = l->falloff == VIT_FALLOFF_WINDOW ? fmax(1 - q, 0) : window * window / d2;
+    const double falloff = l->falloff == VIT_FALLOFF_WINDOW ? fmax(1 - q, 0) : fmax(1 - q * q, 0) / d2;
     return fmax(oracle_dot(to, n) / d, 0) * cone * cone * falloff;
 }
 
