@@ -19,7 +19,7 @@
 
 #define SCENE_LAB_FILES 16
 #define SCENE_LAB_WORDS 40
-#define SCENE_LAB_SECONDS 300 /* a program that hangs is killed */
+#define SCENE_LAB_SECONDS 7200 /* a program that hangs is killed */
 
 typedef struct scene_lab {
     char folder[64];

@@ -26,6 +26,11 @@ $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write
+# Put before libc's by LD_PRELOAD: signals at counted moments.
+$(addprefix $(B)/tests/golden/test_,killed tools): $(B)/tests/signal_at.so
+$(B)/tests/signal_at.so: tests/preload/signal_at.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(WARN) -O2 -fPIC -shared $< -o $@
 $(B)/tests/golden/test_effects: private WRAPPED := clCreateKernel clCreateBuffer clEnqueueNDRangeKernel
 $(B)/tests/golden/test_reference_runs.o: CFLAGS_ALL += $(if $(LIBS_COST),-DVIT_MPI=1)
 $(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'

@@ -176,7 +176,7 @@ static void the_fronts_are_what_a_look_at_all_pairs_finds(void **state) {
         assert_int_equal(at(i, "front_relmse"), takes_part && !beaten(i, "total_relmse"));
         on += at(i, "front") == 1;
     }
-    assert_true(on >= 2);
+    assert_true(on >= 1); /* alone is there what is both the quickest, on a busy machine by chance, and the most accurate */
 }
 
 /* Of the CSV at hand: the least error whose price fits. */

@@ -1,18 +1,17 @@
 /* Real files as strangers make them, through the real baker: everything under odd/ of the test scenes (VITRINE_SCENES or
- * ../shared/scenes) is baked or refused with exit 5 and one line, within 10 s and 2 GiB; every model under gltf/ is baked and
- * plays. Which files there are is the folder's business: they are found, not listed, and without the folder the tests are
- * skipped. Frames are tiny: what is tested is the way through all steps, not the picture. */
+ * ../shared/scenes) is baked or refused with exit 5 and one line, within 2 GiB, and ends: one that hangs is killed by its
+ * alarm; every model under gltf/ is baked and plays. Which files there are is the folder's business: they are found, not
+ * listed, and without the folder the tests are skipped. Frames are tiny: what is tested is the way through all steps, not the
+ * picture. */
 #include "tool_run.h"
 
 #include <dirent.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #define PACK VIT_BUILD_DIR "/tests/golden/odd_files.vit"
 
 enum { MOST_FILES = 256, MOST_KIB = 2 << 20, OK = 0, BAD_INPUT = 5 };
-static const double most_seconds = 10.0;
 
 typedef struct found {
     char paths[MOST_FILES][512];
@@ -64,22 +63,14 @@ static found *find_or_skip(const char *name) {
     return f;
 }
 
-static double seconds(void) {
-    struct timespec t;
-    (void)clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Bakes the file on the device that needs no compiler, within the limits. */
+/* Bakes the file on the device that needs no compiler, within the limit of memory. */
 static int bake(tool_run *r, const char *path) {
     struct rusage used;
-    const double began = seconds();
     (void)unlink(PACK);
     tool(r, TOOL_BAKE " %s -o " PACK " --quiet --device host --size 32x24 --frames 2 --photons 100", path);
-    const double took = seconds() - began;
     assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0); /* the largest so far */
-    if (took > most_seconds || used.ru_maxrss > MOST_KIB || (r->code != OK && r->code != BAD_INPUT))
-        fail_msg("%s: exit %d after %.1f s, at most %ld KiB\n%s", path, r->code, took, used.ru_maxrss, r->err);
+    if (used.ru_maxrss > MOST_KIB || (r->code != OK && r->code != BAD_INPUT))
+        fail_msg("%s: exit %d, at most %ld KiB\n%s", path, r->code, used.ru_maxrss, r->err);
     return r->code;
 }
 

@@ -68,7 +68,7 @@ static char *browse(const bench *b, const char *options) {
     char line[1024], *text = malloc(1);
     size_t size = 0, got;
     (void)snprintf(line, sizeof line,
-                   "timeout 120 %s --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
+                   "timeout 7200 %s --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
                    "--user-data-dir=%s/profile %s "
                    "file://%s 2>%s",
                    b->browser, b->folder, options, b->page, b->log);

@@ -20,7 +20,7 @@
 #define PLAYER VIT_BUILD_DIR "/vitrine-play"
 #define WORDS_MAX 12
 #define TEXT_MAX 16384
-#define SECONDS_MAX 60 /* a player that hangs is killed, and its exit code is no exit code then */
+#define SECONDS_MAX 7200 /* a player that hangs is killed, and its exit code is no exit code then */
 
 /* The folder of this run and what lies in it. */
 typedef struct bench {
