@@ -4,6 +4,7 @@
  * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "sky.h"
 #include "image_file.h"
+#include "radiance.h"
 #include "sobol.h"
 #include <math.h>
 #include <stb/stb_image.h>
@@ -248,6 +249,7 @@ vit_status sky_from_texels(const float *rgb, int width, int height, double rotat
 /* The picture, linear and scaled. What is wrong with it, or NULL. */
 static const char *decode(const uint8_t *bytes, int size, double scale, int *width, int *height, float **rgb) {
     int channels;
+    double divisor[3] = {1.0, 1.0, 1.0};
     *rgb = NULL;
     if (!stbi_info_from_memory(bytes, size, width, height, &channels))
         return "is not an image that can be read (HDR, PNG, JPEG, TGA, BMP)";
@@ -259,6 +261,9 @@ static const char *decode(const uint8_t *bytes, int size, double scale, int *wid
         return "is broken";
     const size_t values = 3 * (size_t)*width * (size_t)*height;
     if (stbi_is_hdr_from_memory(bytes, size)) {
+        const char *wrong = radiance_check(bytes, (size_t)size, *width, *height, divisor);
+        if (wrong)
+            return wrong;
         *rgb = stbi_loadf_from_memory(bytes, size, width, height, &channels, 3);
     } else {
         uint8_t *codes = stbi_load_from_memory(bytes, size, width, height, &channels, 3);
@@ -270,7 +275,7 @@ static const char *decode(const uint8_t *bytes, int size, double scale, int *wid
         stbi_image_free(codes);
     }
     for (size_t i = 0; *rgb && i < values; i++) {
-        const double c = (double)(*rgb)[i] * scale;
+        const double c = (double)(*rgb)[i] / divisor[i % 3] * scale;
         if (!(c >= 0.0 && c <= (double)VIT_MAX_RADIANCE))
             return "has radiances, times sky.scale, that are not in 0..1e12";
         (*rgb)[i] = (float)c;

@@ -230,12 +230,32 @@ static const char *write_file(const void *bytes, size_t size) {
     return path;
 }
 
-/* A Radiance picture of plain texels; rgbe: 4 bytes. Returns its size. */
-static size_t hdr(uint8_t *bytes, int width, int height, const uint8_t rgbe[4]) {
-    size_t n = (size_t)sprintf((char *)bytes, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", height, width);
+/* A Radiance picture of plain texels with lines of the header's; rgbe: 4 bytes. Returns its size. */
+static size_t hdr_with(const char *lines, uint8_t *bytes, int width, int height, const uint8_t rgbe[4]) {
+    size_t n = (size_t)sprintf((char *)bytes, "#?RADIANCE\n%sFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", lines, height, width);
     for (int i = 0; i < width * height; i++, n += 4)
         memcpy(bytes + n, rgbe, 4);
     return n;
+}
+
+static size_t hdr(uint8_t *bytes, int width, int height, const uint8_t rgbe[4]) {
+    return hdr_with("", bytes, width, height, rgbe);
+}
+
+/* Radiance is what a texel says divided by every EXPOSURE and COLORCORR of the header. */
+static void a_pictures_exposure_is_taken_back(void **state) {
+    (void)state;
+    static uint8_t bytes[8192];
+    vit_text why;
+    sky s;
+    const size_t n = hdr_with("EXPOSURE=4\nVIEW= -vtv\nEXPOSURE= 0.5\nCOLORCORR=1 2 0.25\n", bytes, 4, 2,
+                              (const uint8_t[]){128, 128, 128, 132});
+    assert_int_equal(sky_load(write_file(bytes, n), 1, 0, &s, &why), VIT_OK);
+    const vec3 c = sky_radiance(&s, (vec3){0.6f, 0.0f, -0.8f});
+    close_to((double)c.x, 4.0, 1e-5);
+    close_to((double)c.y, 2.0, 1e-5);
+    close_to((double)c.z, 16.0, 1e-5);
+    sky_free(&s);
 }
 
 static void radiance_and_targa_files_are_read(void **state) {
@@ -280,6 +300,12 @@ static void bad_pictures_are_told_by_name(void **state) {
     refused(write_file(bytes, hdr(bytes, 6, 2, (const uint8_t[]){128, 128, 128, 128})), 1, "twice as wide");
     refused(write_file(bytes, hdr(bytes, 4, 2, (const uint8_t[]){128, 128, 128, 200})), 1, "0..1e12");
     refused(write_file(bytes, hdr(bytes, 4, 2, (const uint8_t[]){128, 128, 128, 128})), 1e14, "0..1e12");
+    refused(write_file(bytes, hdr_with("EXPOSURE=0\n", bytes, 4, 2, (const uint8_t[]){128, 128, 128, 128})), 1, "EXPOSURE");
+    refused(write_file(bytes, hdr_with("COLORCORR=1 2\n", bytes, 4, 2, (const uint8_t[]){128, 128, 128, 128})), 1, "COLORCORR");
+    refused(write_file(bytes, hdr(bytes, 4, 2, (const uint8_t[]){128, 128, 128, 128}) - 4), 1, "cut short");
+    const char runs[] =
+        "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n\x80\x80\x80\x80\x01\x01\x01\x07"; /* one texel, seven more like it */
+    refused(write_file(runs, sizeof runs - 1), 1, "run lengths of the old kind");
     const char huge[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8192 +X 16384\n";
     refused(write_file(huge, sizeof huge - 1), 1, "2^25 texels");
     const char cut[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1024 +X 2048\n";
@@ -294,6 +320,7 @@ int main(void) {
         cmocka_unit_test(edges_of_the_square_do_not_show),
         cmocka_unit_test(directions_follow_radiance_and_give_back_all_of_it),
         cmocka_unit_test(a_sky_without_a_picture_is_even),
+        cmocka_unit_test(a_pictures_exposure_is_taken_back),
         cmocka_unit_test(radiance_and_targa_files_are_read),
         cmocka_unit_test(bad_pictures_are_told_by_name),
     };
