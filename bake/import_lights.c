@@ -1,4 +1,5 @@
 #include "importer.h"
+#include "light_units.h"
 #include <assimp/camera.h>
 #include <assimp/cimport.h>
 #include <assimp/light.h>
@@ -99,31 +100,64 @@ static double light_range(const struct aiNode *node) {
     return 0.0;
 }
 
-static bool make_light(bool gltf, const struct aiNode *node, const double world[12], const struct aiLight *l,
-                       model_light *out) {
+/* What half the cone's angle is of the number that Assimp gives: it hands on what the file says, and formats differ. In these
+ * angles are from the axis; FBX, COLLADA (as its exporters write it), 3DS, ASE and Blender say the whole cone's. */
+static double cone_part(const importer *im) {
+    static const char *const from_axis[] = {".x3d", ".x3dv", ".wrl", ".lws"};
+    bool half = im->gltf;
+    for (size_t i = 0; i < sizeof from_axis / sizeof from_axis[0]; i++)
+        half = half || import_has_suffix(im->file, from_axis[i]);
+    return half ? 1.0 : 0.5;
+}
+
+/* Degrees from the axis. What is wrong with the cone, or NULL. */
+static const char *read_cone(const importer *im, const struct aiLight *l, model_light *out) {
+    const double part = cone_part(im) * 180.0 / PI;
+    out->inner = (double)l->mAngleInnerCone * part;
+    out->outer = (double)l->mAngleOuterCone * part;
+    /* COLLADA has one angle and an exponent; Assimp makes up an outer angle, often beyond a half turn. */
+    if (import_has_suffix(im->file, ".dae"))
+        out->outer = out->inner;
+    if (!(out->inner >= 0.0) || !(out->outer > 0.0 && out->outer <= (im->gltf ? 90.001 : 180.001)))
+        return "has a cone that is none";
+    if (out->inner > out->outer)
+        return "has a cone whose inner angle is more than its outer";
+    out->outer = fmin(out->outer, 90.0);
+    out->inner = fmin(out->inner, out->outer);
+    return NULL;
+}
+
+/* What keeps the light from being one of ours, or NULL. */
+static const char *make_light(const importer *im, const struct aiNode *node, const double world[12], const struct aiLight *l,
+                              model_light *out) {
     static const struct aiVector3D origin = {0.0f, 0.0f, 0.0f};
     const float color[3] = {l->mColorDiffuse.r, l->mColorDiffuse.g, l->mColorDiffuse.b};
     const bool directional = l->mType == aiLightSource_DIRECTIONAL, spot = l->mType == aiLightSource_SPOT;
+    if (!directional && !spot && l->mType != aiLightSource_POINT)
+        return "is no point, spot or directional light";
     *out = (model_light){.kind = directional ? VIT_LIGHT_DIRECTIONAL
                                  : spot      ? VIT_LIGHT_SPOT
                                              : VIT_LIGHT_POINT,
-                         .direction = {0.0, -1.0, 0.0}};
+                         .direction = {0.0, -1.0, 0.0},
+                         .states_unit = im->gltf};
     out->range = directional ? 0.0 : light_range(node);
-    transform_point(world, gltf ? &origin : &l->mPosition, out->position); /* as with cameras */
-    if (directional && !transform_direction(world, &l->mDirection, out->direction))
-        return false;
-    if (spot) {
-        out->inner = (double)l->mAngleInnerCone * 180.0 / PI;
-        out->outer = (double)l->mAngleOuterCone * 180.0 / PI;
-        if (!transform_direction(world, &l->mDirection, out->direction) || !(out->inner >= 0.0) ||
-            !(out->outer > 0.0 && out->outer <= 90.001) || out->inner > out->outer)
-            return false;
-        out->outer = out->outer < 90.0 ? out->outer : 90.0;
+    transform_point(world, im->gltf ? &origin : &l->mPosition, out->position); /* as with cameras */
+    if (!finite_point(out->position))
+        return "stands at no finite place";
+    if ((directional || spot) && !transform_direction(world, &l->mDirection, out->direction))
+        return "has no direction";
+    const char *fault = spot ? read_cone(im, l, out) : NULL;
+    if (fault)
+        return fault;
+    for (int i = 0; i < 3; i++) {
+        out->stated[i] = (double)color[i];
+        out->power[i] = (directional ? 1.0 : 4.0 * PI) * out->stated[i] * light_units_of_light(im->s, im->gltf);
+        if (!isfinite(out->power[i]))
+            return "has an intensity that is not finite";
+        if (out->power[i] < 0.0)
+            return "has a negative intensity";
     }
-    for (int i = 0; i < 3; i++)
-        out->power[i] = (directional ? 1.0 : 4.0 * PI) * (double)color[i];
-    return finite_point(out->position) && finite_point(out->power) && out->power[0] >= 0.0 && out->power[1] >= 0.0 &&
-           out->power[2] >= 0.0;
+    return NULL;
 }
 
 bool import_node_light(importer *im, const struct aiNode *node, const double world[12]) {
@@ -133,9 +167,9 @@ bool import_node_light(importer *im, const struct aiNode *node, const double wor
         model_light light;
         if (strcmp(l->mName.data, node->mName.data) != 0)
             continue;
-        if ((l->mType != aiLightSource_POINT && l->mType != aiLightSource_SPOT && l->mType != aiLightSource_DIRECTIONAL) ||
-            !make_light(im->gltf, node, world, l, &light)) {
-            import_warn(im, "light '%.100s' is no point, spot or directional light; it is left out", l->mName.data);
+        const char *fault = make_light(im, node, world, l, &light);
+        if (fault) {
+            import_warn(im, "light '%.100s' %s; it is left out", l->mName.data, fault);
             continue;
         }
         (void)snprintf(light.name, sizeof light.name, "%.*s", SCENE_NAME - 1, l->mName.data);

@@ -1,4 +1,5 @@
 #include "importer.h"
+#include "light_units.h"
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <math.h>
@@ -94,7 +95,9 @@ static void read_emission(importer *im, material_use *use, const struct aiMateri
         return;
     }
     for (int i = 0; i < 3; i++)
-        use->m.emission[i] = import_clamp(color[i] * strength, 1e9f);
+        use->m.emission[i] = import_clamp((float)((double)(color[i] * strength) * light_units_of_emission(im->s)), 1e9f);
+    use->m.emits_by_file = !black;
+    use->m.states_unit = im->gltf;
 }
 
 /* glTF: alphaMode says what alpha means. MASK cuts out; BLEND, which is not simulated, becomes a cut-out or a hole. */
@@ -140,6 +143,7 @@ static void apply_override(importer *im, material_use *use) {
             use->m.albedo[k] = import_clamp((float)o->color[k], VIT_MAX_ALBEDO);
         for (int k = 0; k < 3 && o->has_emission; k++)
             use->m.emission[k] = (float)o->emission[k];
+        use->m.emits_by_file = use->m.emits_by_file && !o->has_emission;
         import_override_shine(im, &use->m, o);
         if (o->has_area_light)
             use->m.area_light = o->area_light;

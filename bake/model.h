@@ -20,6 +20,8 @@ typedef struct model_material {
     float ior;                 /* VIT_MIN_IOR..VIT_MAX_IOR; 1 unless glass */
     float absorption[3];       /* 1/m, finite, >= 0; 0 unless VIT_GLASS */
     bool area_light;           /* what it emits lights others */
+    bool emits_by_file;        /* the emission is the mesh file's, not the scene file's */
+    bool states_unit;          /* the mesh file's format says nits */
     int image;                 /* index in model.images, -1 if none */
     uint32_t wrap_u, wrap_v;   /* VIT_WRAP_* */
     float cutoff;              /* alpha test: texels with alpha * factor < cutoff are holes; 0: opaque */
@@ -35,9 +37,11 @@ typedef struct model_camera {
 typedef struct model_light {
     char name[SCENE_NAME];
     int kind;                  /* VIT_LIGHT_* */
-    double position[3], direction[3], power[3], inner, outer; /* world space; degrees from the axis; W, glTF candela taken as W/sr;
-                                                               * directional: irradiance, W/m2, glTF lux taken as it */
-    double range;
+    double position[3], direction[3], inner, outer; /* world space; degrees from the axis */
+    double power[3];           /* W; directional: irradiance, W/m2 */
+    double stated[3];          /* intensity times colour as the file has it, in its unit (light_units.h) */
+    bool states_unit;          /* the format says candela and lux */
+    double range;              /* metres; 0: none */
 } model_light;
 
 typedef struct model {

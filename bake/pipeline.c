@@ -2,6 +2,7 @@
 #include "pipeline.h"
 #include "bounds.h"
 #include "glass_gap.h"
+#include "light_units.h"
 #include "photons.h"
 #include "scene_move.h"
 #include <math.h>
@@ -85,6 +86,7 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
         status = tracks_evaluate(&p->scene, &p->model, &p->tracks, why);
     if (status != VIT_OK)
         return status;
+    light_units_say(&p->scene, &p->model, p->progress);
     status = draw_glass_in(&p->model, why);
     if (status == VIT_OK)
         status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);

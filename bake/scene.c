@@ -15,6 +15,7 @@ static const field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
     {"background", FIELD_VECTOR, offsetof(scene, background), RADIOMETRIC},
     {"ambient", FIELD_VECTOR, offsetof(scene, ambient), RADIOMETRIC},
+    {"light_units", FIELD_WORD, offsetof(scene, light_units), SCENE_LIGHT_UNITS},
     {"sky", FIELD_OTHER, 0, NULL},
     {"output", FIELD_OTHER, 0, NULL},
     {"meshes", FIELD_OTHER, 0, NULL},

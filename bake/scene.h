@@ -44,6 +44,10 @@ typedef struct scene_light {
     int line;
 } scene_light;
 
+/* Unit of the lights and the emission of mesh files (light_units.h). */
+enum { LIGHT_UNITS_AUTO, LIGHT_UNITS_PHOTOMETRIC, LIGHT_UNITS_RADIOMETRIC };
+#define SCENE_LIGHT_UNITS "auto|photometric|radiometric" /* in this order */
+
 #define SCENE_MATERIAL_KINDS "matt|mirror|glass|thin_glass" /* VIT_MATTE and so on, in this order */
 
 /* Overrides of the material called `name`; has_* say which. */
@@ -113,6 +117,7 @@ typedef struct scene {
     double fps;
     double background[3];      /* W/(m2 sr) */
     double ambient[3];         /* radiance of white matt surfaces in no other light, W/(m2 sr) */
+    int light_units;           /* LIGHT_UNITS_* */
     scene_sky sky;
     scene_mesh *meshes;
     int mesh_count;

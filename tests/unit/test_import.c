@@ -659,14 +659,14 @@ static void lights_have_their_power_cone_and_range(void **state) {
     import_good(FILE_OF("quad.gltf"), &m);
     assert_true(m.light_count == 3 && m.warnings == 0);
     const model_light *bulb = &m.lights[0], *spot = &m.lights[1], *sun = &m.lights[2];
-    const double watts = 4.0 * 3.14159265358979 * 8.0;
+    const double watts = 4.0 * 3.14159265358979 * 8.0 / 683.0, lux = 1.0 / 683.0;
     assert_string_equal(bulb->name, "Bulb");
     assert_true(bulb->kind == VIT_LIGHT_POINT && bulb->position[1] == 2.0 && bulb->range == 0.0);
-    assert_true(fabs(bulb->power[0] - watts) < 1e-4 && fabs(bulb->power[2] - 0.25 * watts) < 1e-4);
+    assert_true(fabs(bulb->power[0] - watts) < 1e-6 && fabs(bulb->power[2] - 0.25 * watts) < 1e-6 && bulb->stated[0] == 8.0);
     assert_true(spot->kind == VIT_LIGHT_SPOT && spot->range == 6.0 && fabs(spot->direction[1] + 1.0) < 1e-6);
     assert_true(fabs(spot->inner - 14.3239449) < 1e-4 && fabs(spot->outer - 28.6478898) < 1e-4);
     assert_true(sun->kind == VIT_LIGHT_DIRECTIONAL && sun->range == 0.0 && fabs(sun->direction[1] + 1.0) < 1e-6);
-    assert_true(fabs(sun->power[0] - 3.0) < 1e-6 && fabs(sun->power[1] - 1.5) < 1e-6 && fabs(sun->power[2] - 0.75) < 1e-6);
+    assert_true(fabs(sun->power[0] - 3.0 * lux) < 1e-9 && fabs(sun->power[1] - 1.5 * lux) < 1e-9 && fabs(sun->power[2] - 0.75 * lux) < 1e-9);
     model_free(&m);
 }
 
