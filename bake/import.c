@@ -214,5 +214,6 @@ void model_free(model *m) {
     free(m->images);
     free(m->cameras);
     free(m->lights);
+    inputs_free(&m->files);
     *m = (model){0};
 }

@@ -3,7 +3,6 @@
 #include "cost/fit_pack.h"
 #include "options.h"
 #include "pipeline.h"
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,6 +44,26 @@ static uint32_t played_on(const options *o) {
     return o->fit > 0 ? vit_device_default() : VIT_DEVICE_HOST;
 }
 
+/* The pack must be none of the files that are known to be read by now. */
+static vit_status check_against_inputs(const bake *b, vit_text *why) {
+    const char *path = b->options.output;
+    vit_status status = path ? inputs_check_output(&b->pipeline.scene.files, "-o", path, why) : VIT_OK;
+    return path && status == VIT_OK ? inputs_check_output(&b->pipeline.model.files, "-o", path, why) : status;
+}
+
+/* What would make all the work be for nothing. */
+static vit_status check_before(const bake *b, vit_text *why) {
+    vit_text name;
+    vit_status status = check_against_inputs(b, why);
+    if (status == VIT_OK && b->options.output)
+        status = pack_can_save(b->options.output, why);
+    if (status == VIT_OK && b->options.device_given && !vit_device_name(b->options.device, &name)) {
+        *why = name;
+        status = VIT_FAILED;
+    }
+    return status;
+}
+
 static vit_status make_pack(bake *b, vit_text *why) {
     pipeline *p = &b->pipeline;
     p->strict = b->options.strict;
@@ -56,7 +75,11 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (status == VIT_OK)
         status = options_apply(&b->options, &p->scene, why);
     if (status == VIT_OK)
+        status = check_before(b, why);
+    if (status == VIT_OK)
         status = pipeline_load(p, why);
+    if (status == VIT_OK)
+        status = check_against_inputs(b, why);
     if (status != VIT_OK)
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
@@ -125,25 +148,14 @@ static vit_status explain(bake *b, vit_text *why) {
     return VIT_OK;
 }
 
-/* Found out before the work rather than after it. */
-static vit_status check_output(const char *path, vit_text *why) {
-    char folder[SCENE_PATH];
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-    if (!path || access(folder, W_OK | X_OK) == 0)
-        return VIT_OK;
-    snprintf(why->text, sizeof why->text, "%.400s: cannot write into its folder: %s", path, strerror(errno));
-    return VIT_FAILED;
-}
-
 static vit_status run(bake *b, vit_text *why) {
     const pipeline_packed *packed = &b->packed;
-    vit_status status = check_output(b->options.output, why);
-    if (status == VIT_OK)
-        status = make_pack(b, why);
+    vit_status status = make_pack(b, why);
     progress_end(&b->progress);
     if (status == VIT_OK && b->options.explain)
         status = explain(b, why);
+    if (status == VIT_OK) /* links may have been made meanwhile */
+        status = check_against_inputs(b, why);
     if (status == VIT_OK && b->options.output)
         status = pack_save(b->options.output, packed->bytes, packed->size, why);
     if (status == VIT_OK && b->options.output)

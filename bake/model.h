@@ -66,6 +66,7 @@ typedef struct model {
     uint64_t not_finite;       /* triangles dropped for NaN or infinite positions */
     uint64_t not_triangles;    /* points and lines dropped */
     uint64_t warnings;         /* lines given to `warn` */
+    inputs files;              /* that were read: meshes, what they refer to, textures */
 } model;
 
 /* One line, without a line feed, for the user to see. */

@@ -1,6 +1,7 @@
 #include "options.h"
 #include "effects.h"
 #include "fields.h"
+#include "option_text.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,44 +10,29 @@
 
 static vit_status usage(vit_text *why, const char *option, const char *wants) {
     snprintf(why->text, sizeof why->text, "%.100s: %s (try --help)", option, wants);
+    for (char *c = why->text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
     return VIT_USAGE;
 }
 
-static bool whole(const char *text, long least, long most, long *out) {
-    char *end;
-    if (!text || !*text)
-        return false;
-    *out = strtol(text, &end, 10);
-    return *end == 0 && *out >= least && *out <= most;
-}
-
-static bool size_of(const char *text, int *width, int *height) {
-    char end;
-    /* Four digits do not overflow. NOLINTNEXTLINE(cert-err34-c) */
-    return text && sscanf(text, "%4dx%4d%c", width, height, &end) == 2 && *width >= 1 && *width <= 7680 && *height >= 1 && *height <= 4320;
-}
-
 static bool radius_of(const char *text, options *o) {
-    char *end;
     o->radius_given = true;
     o->radius = 0;
-    if (!text || strcmp(text, "auto") == 0)
-        return text != NULL;
-    o->radius = strtod(text, &end);
-    return *text && *end == 0 && o->radius > 0 && o->radius < 1e9;
+    if (text && strcmp(text, "auto") == 0)
+        return true;
+    return option_number(text, 0, 1e9, &o->radius) && o->radius > 0;
 }
 
 /* A positive number. */
 static bool budget_of(const char *text, double *out) {
-    char *end;
-    *out = text ? strtod(text, &end) : 0;
-    return text && *text >= '0' && *text <= '9' && *end == 0 && *out > 0 && *out < 1e18;
+    return option_number(text, 0, 1e18, out) && *out > 0;
 }
 
-static bool fraction_of(const char *text, double *out) {
-    char *end;
-    *out = text ? strtod(text, &end) : 0;
-    return text && *text && *end == 0 && *out >= 0 && *out <= 1;
+/* "-" would be standard output, and a pack is renamed into place. */
+static bool file_of(const char *text, const char **out) {
+    *out = text;
+    return text && *text && strcmp(text, "-") != 0;
 }
 
 static bool effects_of(const char *text, options *o) {
@@ -102,7 +88,7 @@ static bool among(const char *name, const char *value, options *o, bool *known, 
             *known = true;
             *wants = lists[i].wants;
             long number = 0;
-            if (fields_place(lists[i].list, value) < 0 || !whole(value, 0, INT_MAX, &number))
+            if (fields_place(lists[i].list, value) < 0 || !option_whole(value, 0, INT_MAX, &number))
                 return false;
             *lists[i].to = (int)number;
             return true;
@@ -134,25 +120,25 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         if (strcmp(name, numbers[i].name) == 0) {
             *wants = numbers[i].wants;
-            bool good = whole(value, numbers[i].least, numbers[i].most, &n);
+            bool good = option_whole(value, numbers[i].least, numbers[i].most, &n);
             *numbers[i].to = (int)n;
             return good;
         }
     if (strcmp(name, "-o") == 0 || strcmp(name, "--output") == 0)
-        return *wants = "a file to write", (o->output = value) != NULL;
+        return *wants = "a file to write; - is none, since a pack is put in place whole (./- is one)", file_of(value, &o->output);
     if (strcmp(name, "--threads") == 0 && (*wants = "a number of threads, 0 to 1024")) {
-        bool good = whole(value, 0, 1024, &n);
+        bool good = option_whole(value, 0, 1024, &n);
         o->threads = (unsigned)n;
         return good;
     }
     if (strcmp(name, "--device") == 0 && (*wants = "a device's number (vitrine-play --list-devices), or host")) {
-        bool host = value && strcmp(value, "host") == 0, good = host || whole(value, 0, 1023, &n);
+        bool host = value && strcmp(value, "host") == 0, good = host || option_whole(value, 0, 1023, &n);
         o->device = host ? VIT_DEVICE_HOST : (uint32_t)n;
         o->device_given = good;
         return good;
     }
     if (strcmp(name, "--size") == 0)
-        return *wants = "WIDTHxHEIGHT, up to 7680x4320", size_of(value, &o->width, &o->height);
+        return *wants = "WIDTHxHEIGHT, up to 7680x4320", option_size(value, &o->width, &o->height);
     if (strcmp(name, "--fit") == 0)
         return *wants = "milliseconds a frame", budget_of(value, &o->fit);
     if (strcmp(name, "--fit-work") == 0)
@@ -168,7 +154,7 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
     if (strcmp(name, "--antialias-filter") == 0)
         return *wants = "box or tent", one_of(value, "box", "tent", &o->antialias_filter);
     if (strcmp(name, "--antialias-contrast") == 0)
-        return *wants = "0 to 1", fraction_of(value, &o->antialias_contrast);
+        return *wants = "0 to 1", option_number(value, 0, 1, &o->antialias_contrast);
     if (strcmp(name, "--effects") == 0)
         return *wants = "auto, all, none, or names with commas between (bake/README.md lists them)", effects_of(value, o);
     if (strcmp(name, "--texture-filter") == 0)
@@ -182,15 +168,20 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
     for (int i = 1; i < argc; i++) {
         const char *wants = "";
         bool known;
+        const option_words w = option_split(argv[i], i + 1 < argc ? argv[i + 1] : NULL);
         if (argv[i][0] != '-') {
             if (out->input)
                 return usage(why, argv[i], "one scene at a time");
             out->input = argv[i];
-        } else if (!flag(argv[i], out)) {
-            const char *value = i + 1 < argc ? argv[i + 1] : NULL;
-            if (!valued(argv[i], value, out, &known, &wants))
-                return usage(why, argv[i], known ? wants : "unknown option");
-            i++;
+        } else if (strcmp(argv[i], "-") == 0) {
+            return usage(why, "-", "a scene or mesh is read from a file, not from standard input");
+        } else if (flag(w.name, out)) {
+            if (w.joined)
+                return usage(why, w.name, "takes no value");
+        } else {
+            if (!valued(w.name, w.value, out, &known, &wants))
+                return usage(why, w.name, known ? wants : "unknown option");
+            i += !w.joined;
         }
     }
     if (out->help || out->version)
@@ -255,7 +246,7 @@ void options_help(void) {
          "  vitrine-bake scene.cfg --explain         bake, write nothing, say what: effects and why, every buffer, total bytes\n"
          "  vitrine-bake scene.cfg --fit 33 -o s.vit   the best quality that plays at 30 frames a second here\n"
          "\n"
-         "  -o, --output FILE     the pack; written under another name first, so there is never half a pack\n"
+         "  -o, --output FILE     the pack; written under another name first, so there is never half a pack; never a file that is read\n"
          "  --explain             effects with what each adds in bytes and work, bounds, buffers; with -o the pack is written too\n"
          "  --strict              a missing texture is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
@@ -267,7 +258,7 @@ void options_help(void) {
          "                        kernels to compile); changes no byte. With --fit: plays what is timed (default 0, or host if\n"
          "                        there is no OpenCL)\n"
          "  --quiet               warnings and errors only\n"
-         "  --version, --help\n"
+         "  --version, --help     every --option VALUE may be written --option=VALUE\n"
          "\n"
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"

@@ -223,11 +223,66 @@ static const char *fill_and_rename(int file, const char *path, const void *bytes
     return failed;
 }
 
-vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why) {
-    /* rename() would replace a device, and leave whoever reads a pipe waiting. */
+/* rename() would replace a device, leave whoever reads a pipe waiting, and not ask whether the file may be written. */
+static vit_status check_there(const char *path, vit_text *why) {
     struct stat there;
-    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode))
+    if (stat(path, &there) != 0)
+        return VIT_OK;
+    if (S_ISDIR(there.st_mode))
+        return fail_file(why, path, "is a folder, not a regular file", 0);
+    if (!S_ISREG(there.st_mode))
         return fail_file(why, path, "not a regular file", 0);
+    if (access(path, W_OK) != 0)
+        return fail_file(why, path, "cannot be written", errno);
+    return there.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH) ? VIT_OK : fail_file(why, path, "is read-only", 0); /* root may, but is not meant to */
+}
+
+vit_status pack_can_save(const char *path, vit_text *why) {
+    static const unsigned char page[VIT_PACK_ALIGN];
+    vit_status status = check_there(path, why);
+    if (status != VIT_OK)
+        return status;
+    const int file = create_temporary(path);
+    if (file < 0)
+        return fail_file(why, path, "cannot create a file there", errno);
+    const bool fine = write_all(file, page, sizeof page);
+    const int error = errno;
+    unlink(temporary.path);
+    temporary.armed = 0;
+    close(file);
+    return fine ? VIT_OK : fail_file(why, path, "write", error);
+}
+
+vit_status pack_can_make(const char *folder, const char *name, vit_text *why) {
+    char path[PATH_MAX];
+    struct stat there;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    for (;;) {
+        if (length + strlen(name) + 2 > sizeof path)
+            return fail_file(why, folder, strerror(ENAMETOOLONG), 0);
+        (void)snprintf(path, sizeof path, "%.*s", (int)length, folder);
+        if (stat(length ? path : ".", &there) == 0)
+            break;
+        if (errno != ENOENT)
+            return fail_file(why, folder, "cannot make this folder", errno);
+        name = "vitrine"; /* the folder that is there may hold a file of that name, which is not ours */
+        while (length > 0 && folder[length - 1] != '/') /* the folder above */
+            length--;
+        while (length > 1 && folder[length - 1] == '/')
+            length--;
+    }
+    if (!S_ISDIR(there.st_mode))
+        return fail_file(why, path, "is there and is not a folder", 0);
+    (void)snprintf(path + length, sizeof path - length, "%s%s", length > 0 && path[length - 1] != '/' ? "/" : "", name);
+    return pack_can_save(path, why);
+}
+
+vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why) {
+    const vit_status status = check_there(path, why);
+    if (status != VIT_OK)
+        return status;
     remove_left_behind(path);
     const int file = create_temporary(path);
     if (file < 0)

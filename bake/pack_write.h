@@ -18,5 +18,9 @@ vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vi
  * left of it is removed by the next pack_save() to the same path. */
 vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why);
 void pack_abandon(void);
+/* Whether pack_save() could write there now: what is known before the work. Tries it with a page, and leaves nothing. VIT_FAILED. */
+vit_status pack_can_save(const char *path, vit_text *why);
+/* Likewise for file `name` of a folder that may still have to be made, and folders above it. */
+vit_status pack_can_make(const char *folder, const char *name, vit_text *why);
 
 #endif

@@ -183,11 +183,16 @@ static bool include_name(const char *line, size_t length, char *name, size_t roo
     return true;
 }
 
-/* `left`: includes that may follow. Files that include the next one twice each make 2^depth of them. */
-static bool check_file(const place *at, const char *path, int depth, int *left);
+/* The files of a scene. */
+typedef struct sources {
+    inputs *files;
+    int left; /* includes that may follow: files that include the next one twice each make 2^depth of them */
+} sources;
+
+static bool check_file(const place *at, const char *path, int depth, sources *all);
 
 /* libconfig hands includes to a scanner that ends the whole process on a folder or a device: look first. */
-static bool check_includes(const place *at, const char *path, FILE *file, int depth, int *left) {
+static bool check_includes(const place *at, const char *path, FILE *file, int depth, sources *all) {
     char *line = NULL;
     size_t size = 0;
     bool fine = true;
@@ -199,22 +204,22 @@ static bool check_includes(const place *at, const char *path, FILE *file, int de
         struct stat st;
         const int used = snprintf(full, sizeof full, "%s%s", at->folder, name);
         const bool below = name[0] && name[0] != '/' && used > 0 && used < SCENE_PATH;
-        if (!below || depth >= MAX_DEPTH || *left == 0) {
+        if (!below || depth >= MAX_DEPTH || all->left == 0) {
             (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: %s", path, number,
                            !below               ? "@include takes a path below the scene's folder"
                            : depth >= MAX_DEPTH ? "@include goes deeper than 10 files"
                                                 : "more than 256 files are included");
             fine = false;
         } else if (stat(full, &st) == 0) { /* a missing one is libconfig's to report, unless a comment holds it */
-            --*left;
-            fine = check_file(at, full, depth + 1, left);
+            --all->left;
+            fine = check_file(at, full, depth + 1, all);
         }
     }
     free(line);
     return fine;
 }
 
-static bool check_file(const place *at, const char *path, int depth, int *left) {
+static bool check_file(const place *at, const char *path, int depth, sources *all) {
     struct stat st;
     place here = *at;
     here.path = path;
@@ -227,7 +232,8 @@ static bool check_file(const place *at, const char *path, int depth, int *left) 
     FILE *file = fopen(path, "r");
     if (!file)
         return fields_fail(&here, NULL, "cannot be read");
-    const bool fine = check_includes(at, path, file, depth, left);
+    inputs_add(all->files, path);
+    const bool fine = check_includes(at, path, file, depth, all);
     (void)fclose(file);
     return fine;
 }
@@ -282,6 +288,15 @@ static vit_status copy_path(scene *s, const char *path, vit_text *why) {
     return VIT_BAD_INPUT;
 }
 
+/* What the mesh files in turn refer to is known when they are read. */
+static void add_named_files(scene *s) {
+    for (int i = 0; i < s->mesh_count; i++)
+        inputs_add(&s->files, s->meshes[i].file);
+    for (int i = 0; i < s->material_count; i++)
+        inputs_add(&s->files, s->materials[i].texture);
+    inputs_add(&s->files, s->sky.image);
+}
+
 vit_status scene_read(const char *path, scene *out, vit_text *why) {
     char folder[SCENE_PATH];
     set_defaults(out);
@@ -291,15 +306,19 @@ vit_status scene_read(const char *path, scene *out, vit_text *why) {
     char *slash = strrchr(folder, '/');
     folder[slash ? slash + 1 - folder : 0] = '\0';
     reader r = {.s = out, .at = {.path = out->path, .folder = folder, .why = why}};
-    int includes = MAX_INCLUDES;
-    if (!check_file(&r.at, path, 0, &includes))
+    sources all = {&out->files, MAX_INCLUDES};
+    if (!check_file(&r.at, path, 0, &all)) {
+        scene_free(out);
         return VIT_BAD_INPUT;
+    }
     config_t config;
     config_init(&config);
     const bool fine = parse(&r.at, &config) && read_top(&r, config_root_setting(&config));
     config_destroy(&config);
-    if (fine)
+    if (fine) {
+        add_named_files(out);
         return VIT_OK;
+    }
     scene_free(out);
     return VIT_BAD_INPUT;
 }
@@ -322,6 +341,7 @@ vit_status scene_for_mesh(const char *path, scene *out, vit_text *why) {
     }
     out->mesh_count = 1;
     out->automatic = true;
+    add_named_files(out);
     return VIT_OK;
 }
 
@@ -332,5 +352,6 @@ void scene_free(scene *s) {
     free(s->camera);
     free(s->lights);
     free(s->materials);
+    inputs_free(&s->files);
     *s = (scene){0};
 }

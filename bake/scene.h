@@ -2,6 +2,7 @@
 #ifndef VIT_BAKE_SCENE_H
 #define VIT_BAKE_SCENE_H
 
+#include "inputs.h"
 #include "vitrine.h"
 #include <stdbool.h>
 
@@ -133,6 +134,7 @@ typedef struct scene {
     scene_quality quality;
     int effects_choice;        /* EFFECTS_* */
     uint64_t effects;          /* EFFECTS_LISTED: VIT_BIT() of those named */
+    inputs files;              /* the scene file, what it includes, and the files that it names */
     bool automatic;            /* no scene file: camera and light are made from the model's box (tracks.c) */
 } scene;
 

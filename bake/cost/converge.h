@@ -65,5 +65,7 @@ vit_status converge_run(const sweep_input *in, const converge_plan *how, converg
 void converge_print(const converge_results *r, FILE *to);
 /* converge.csv and converge.svg in `folder`, which is made if need be. VIT_FAILED: cannot be written; gnuplot fails. */
 vit_status converge_write(const converge_results *r, const char *folder, vit_text *why);
+/* Name of file `index` of those; NULL beyond the last. */
+const char *converge_name(uint32_t index);
 
 #endif

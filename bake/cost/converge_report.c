@@ -113,11 +113,21 @@ static vit_status print_svg(const void *results, FILE *to, vit_text *why) {
     return status;
 }
 
+static const struct {
+    const char *name;
+    report_part_fn *part;
+} files[] = {{"converge.csv", print_csv}, {"converge.svg", print_svg}};
+enum { FILES = sizeof files / sizeof files[0] };
+
+const char *converge_name(uint32_t index) {
+    return index < FILES ? files[index].name : NULL;
+}
+
 vit_status converge_write(const converge_results *r, const char *folder, vit_text *why) {
     vit_status status = report_folder(folder, why);
-    if (status == VIT_OK)
-        status = report_file(r, folder, "converge.csv", print_csv, why);
-    return status == VIT_OK ? report_file(r, folder, "converge.svg", print_svg, why) : status;
+    for (int i = 0; i < FILES && status == VIT_OK; i++)
+        status = report_file(r, folder, files[i].name, files[i].part, why);
+    return status;
 }
 
 static void print_steps(const converge_results *r, FILE *to) {

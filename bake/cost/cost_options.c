@@ -2,6 +2,7 @@
 #include "cost_options.h"
 #include "converge.h"
 #include "knobs.h"
+#include "option_text.h"
 #include "sweep.h"
 #include <math.h>
 #include <stddef.h>
@@ -55,21 +56,14 @@ enum { OPTIONS = sizeof options / sizeof options[0] };
 
 static vit_status usage(vit_text *why, const char *name, const char *wants) {
     (void)snprintf(why->text, sizeof why->text, "%.100s: %s (try --help)", name, wants);
+    for (char *c = why->text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
     return VIT_USAGE;
 }
 
 static bool read_number(const char *text, bool whole, const option *row, double *out) {
-    char *end;
-    *out = strtod(text, &end);
-    return *text >= '0' && *text <= '9' && *end == '\0' && *out >= row->least && *out <= row->most &&
-           (!whole || *out == floor(*out));
-}
-
-static bool read_size(const char *text, int *size) {
-    char end;
-    /* Four digits do not overflow. NOLINTNEXTLINE(cert-err34-c) */
-    return sscanf(text, "%4dx%4d%c", &size[0], &size[1], &end) == 2 && size[0] >= 1 && size[0] <= 7680 && size[1] >= 1 &&
-           size[1] <= 4320;
+    return option_number(text, row->least, row->most, out) && (!whole || *out == floor(*out));
 }
 
 /* False: `value` is not what the row takes. */
@@ -83,7 +77,7 @@ static bool set(const option *row, const char *value, cost_options *o) {
         break;
     case WORD:
         *(const char **)to = value;
-        return value[0] != '\0';
+        return value[0] != '\0' && strcmp(value, "-") != 0; /* files and folders, which "-" is none of, and names of knobs */
     case WHOLE:
         fine = read_number(value, true, row, &number);
         *(uint32_t *)to = fine ? (uint32_t)number : 0;
@@ -100,7 +94,7 @@ static bool set(const option *row, const char *value, cost_options *o) {
     case REAL:
         return read_number(value, row->field == AT(fit_work), row, to);
     case SIZE:
-        return read_size(value, to);
+        return option_size(value, &o->width, &o->height);
     case ERRORS:
         *(bool *)to = strcmp(value, "relmse") == 0;
         return *(bool *)to || strcmp(value, "nmse") == 0;
@@ -147,15 +141,21 @@ vit_status cost_options_parse(int argc, char **argv, cost_options *out, vit_text
             out->input = argv[i];
             continue;
         }
-        const char *name = strcmp(argv[i], "-h") == 0 ? "--help" : strcmp(argv[i], "--output") == 0 ? "-o" : argv[i];
+        if (strcmp(argv[i], "-") == 0)
+            return usage(why, "-", "a scene or mesh is read from a file, not from standard input");
+        const option_words w = option_split(argv[i], i + 1 < argc ? argv[i + 1] : NULL);
+        const char *name = strcmp(w.name, "-h") == 0 ? "--help" : strcmp(w.name, "--output") == 0 ? "-o" : w.name;
         while (k < OPTIONS && strcmp(options[k].name, name) != 0)
             k++;
         if (k == OPTIONS)
-            return usage(why, argv[i], "unknown option");
+            return usage(why, w.name, "unknown option");
+        const bool alone = options[k].kind == FLAG;
         describe(&options[k], wants, sizeof wants);
-        const char *value = options[k].kind == FLAG ? "" : i + 1 < argc ? argv[++i] : NULL;
-        if (!value || !set(&options[k], value, out))
+        if (alone && w.joined)
+            return usage(why, name, "takes no value");
+        if ((!alone && !w.value) || !set(&options[k], alone ? "" : w.value, out))
             return usage(why, name, wants);
+        i += !alone && !w.joined;
     }
     return check(out, why);
 }

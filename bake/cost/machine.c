@@ -17,7 +17,7 @@ const char *machine_cache_folder(char *folder, size_t room) {
         return NULL;
     (void)mkdir(folder, 0777);
     (void)snprintf(folder + used, room - (size_t)used, "/vitrine");
-    return mkdir(folder, 0777) == 0 || errno == EEXIST ? folder : NULL;
+    return (mkdir(folder, 0777) == 0 || errno == EEXIST) && access(folder, W_OK | X_OK) == 0 ? folder : NULL;
 }
 
 uint64_t machine_memory(void) {

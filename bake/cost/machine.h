@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 /* Makes the folder for finished and unfinished references, $XDG_CACHE_HOME/vitrine or ~/.cache/vitrine, and writes its name.
- * NULL: there is no home for it. */
+ * NULL: there is no home for it, or it cannot be written. */
 const char *machine_cache_folder(char *folder, size_t room);
 /* A quarter of the machine's memory, bytes. */
 uint64_t machine_memory(void);

@@ -1,6 +1,7 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
 #include "converge.h"
 #include "cost_options.h"
+#include "cost_outputs.h"
 #include "fit.h"
 #include "machine.h"
 #include "report.h"
@@ -43,7 +44,16 @@ static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
         p->scene.width = o->width;
         p->scene.height = o->height;
     }
-    return pipeline_load(p, why);
+    status = spread_rank() == 0 ? cost_outputs_check(o, why) : VIT_OK; /* it writes for all */
+    if (status == VIT_OK)
+        status = cost_outputs_are_no_inputs(o, p, why);
+    if (spread_any(status != VIT_OK)) {
+        if (status == VIT_OK)
+            snprintf(why->text, sizeof why->text, "rank 0 cannot write its files");
+        return status == VIT_OK ? VIT_FAILED : status;
+    }
+    status = pipeline_load(p, why);
+    return status == VIT_OK ? cost_outputs_are_no_inputs(o, p, why) : status;
 }
 
 static vit_status fit(const cost_options *o, const cost_results *r, vit_text *why) {
@@ -84,9 +94,7 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
                                                  : machine_cache_folder(folder, sizeof folder),
                             .memory = o->memory > 0 ? (uint64_t)o->memory << 20 : machine_memory(),
                             .cancel = &cancel};
-    vit_status status = o->write ? rewrite_check(o->write, why) : VIT_OK; /* before the work rather than after it */
-    if (status == VIT_OK)
-        status = load(o, p, why);
+    vit_status status = load(o, p, why);
     if (status == VIT_OK && o->converge)
         return converge(o, &in, why);
     if (status == VIT_OK)

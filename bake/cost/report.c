@@ -70,11 +70,19 @@ vit_status report_file(const void *results, const char *folder, const char *name
     return status;
 }
 
+static const struct {
+    const char *name;
+    report_part_fn *part;
+} files[] = {{"report.csv", csv_part}, {"report.json", json_part}, {"index.html", page_part}};
+enum { FILES = sizeof files / sizeof files[0] };
+
+const char *report_name(uint32_t index) {
+    return index < FILES ? files[index].name : NULL;
+}
+
 vit_status report_write(const cost_results *r, const char *folder, vit_text *why) {
     vit_status status = report_folder(folder, why);
-    if (status == VIT_OK)
-        status = report_file(r, folder, "report.csv", csv_part, why);
-    if (status == VIT_OK)
-        status = report_file(r, folder, "report.json", json_part, why);
-    return status == VIT_OK ? report_file(r, folder, "index.html", page_part, why) : status;
+    for (int i = 0; i < FILES && status == VIT_OK; i++)
+        status = report_file(r, folder, files[i].name, files[i].part, why);
+    return status;
 }

@@ -11,4 +11,7 @@
  * then. */
 vit_status report_write(const cost_results *r, const char *folder, vit_text *why);
 
+/* Name of file `index` of those; NULL beyond the last. */
+const char *report_name(uint32_t index);
+
 #endif

@@ -19,6 +19,7 @@ typedef struct cache_header {
 } cache_header;
 
 static const char magic[8] = "VITREF2";
+#define KIND 6 /* bytes of it that all versions share */
 
 /* META's part that the picture depends on, and the settings. */
 typedef struct key_settings {
@@ -135,6 +136,17 @@ void state_load(reference_state *s, const char *folder) {
         (void)fclose(f);
 }
 
+/* What lies there under the reference's name and is none is somebody's. */
+static bool is_foreign(const char *path) {
+    char start[sizeof magic];
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return errno != ENOENT;
+    const bool ours = fread(start, 1, sizeof start, f) == sizeof start && memcmp(start, magic, KIND) == 0;
+    (void)fclose(f);
+    return !ours;
+}
+
 vit_status state_save(const reference_state *s, const char *folder, vit_text *why) {
     const size_t size = s->pixels * sizeof *s->sums;
     cache_header h = {
@@ -147,6 +159,8 @@ vit_status state_save(const reference_state *s, const char *folder, vit_text *wh
     if (!file || !file_name(s, folder, path))
         snprintf(why->text, sizeof why->text, "reference: %s",
                  file ? "the cache's folder has too long a name" : "out of memory");
+    else if (is_foreign(path))
+        snprintf(why->text, sizeof why->text, "%.400s: is there and is no reference: it is not written over", path);
     else {
         memcpy(file, &h, sizeof h);
         memcpy(file + sizeof h, s->sums, size);

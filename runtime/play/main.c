@@ -2,6 +2,7 @@
  * Flow: options -> pack -> vit_require -> (explain, or: arena -> vit_open -> sink -> frames -> counting -> report -> budgets).
  */
 #include "failure.h"
+#include "outputs.h"
 #include "player.h"
 #include "sinks/output.h"
 #include <stdlib.h>
@@ -80,8 +81,6 @@ static vit_status take_memory(void **out, size_t size, size_t alignment, const c
 
 static vit_status open_sink(player *p, vit_text *why) {
     const play_options *o = p->options;
-    if (o->sink->stream && pack_file_is(&p->pack, o->target))
-        return play_fail(why, VIT_USAGE, "--out %s:%s would overwrite the pack that is played", o->sink->name, o->target);
     sink_setup setup = {.target = o->target,
                         .width = p->need.width,
                         .height = p->need.height,
@@ -243,6 +242,8 @@ static vit_status run_pack(player *p, vit_text *why) {
         status = check_frames(p, why);
     if (status == VIT_OK)
         status = check_budgets(p, why);
+    if (status == VIT_OK)
+        status = outputs_check(p, why);
     if (status == VIT_OK)
         status = play_and_count(p, why);
     return status;

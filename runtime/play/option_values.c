@@ -69,6 +69,8 @@ vit_status option_set_out(play_options *o, const char *value, vit_text *why) {
         return play_fail(why, VIT_USAGE, "--out %s takes no target, got '%s'", kind->name, value);
     if (kind->target != NULL && (colon == NULL || colon[1] == '\0'))
         return play_fail(why, VIT_USAGE, "--out %s needs a target: %s:%s", kind->name, kind->name, kind->target);
+    if (kind->target != NULL && !kind->stream && strcmp(colon + 1, "-") == 0)
+        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; raw and y4m write to stdout", kind->name);
     o->sink = kind;
     o->target = colon != NULL ? colon + 1 : "";
     o->out_given = true;
@@ -131,7 +133,7 @@ vit_status option_set_group(play_options *o, const char *value, vit_text *why) {
 }
 
 vit_status option_set_report(play_options *o, const char *value, vit_text *why) {
-    if (value != NULL && value[0] == '\0')
+    if (value != NULL && (value[0] == '\0' || strcmp(value, "-") == 0))
         return play_fail(why, VIT_USAGE, "--report= needs a file's name; --report alone prints a table");
     if (value != NULL)
         o->report_file = value;
@@ -158,7 +160,7 @@ vit_status option_set_percentile(play_options *o, const char *value, vit_text *w
 
 static vit_status set_file(const char **field, const char *name, const char *value, vit_text *why) {
     *field = value;
-    return value[0] != '\0' ? VIT_OK : play_fail(why, VIT_USAGE, "--%s needs a file's name", name);
+    return value[0] != '\0' && strcmp(value, "-") != 0 ? VIT_OK : play_fail(why, VIT_USAGE, "--%s needs a file's name, got '%s'", name, value);
 }
 
 vit_status option_set_work_budget(play_options *o, const char *value, vit_text *why) {

@@ -26,7 +26,7 @@ static vit_status map_descriptor(int fd, const char *path, pack_file *out, vit_t
     void *bytes = mmap(NULL, (size_t)s.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
     if (bytes == MAP_FAILED)
         return play_fail(why, VIT_BAD_INPUT, "%s: cannot be mapped: %s", path, strerror(errno));
-    *out = (pack_file){.bytes = bytes, .size = (size_t)s.st_size, .device = s.st_dev, .inode = s.st_ino};
+    *out = (pack_file){.bytes = bytes, .size = (size_t)s.st_size};
     return VIT_OK;
 }
 
@@ -38,11 +38,6 @@ vit_status pack_file_map(const char *path, pack_file *out, vit_text *why) {
     vit_status status = map_descriptor(fd, path, out, why);
     (void)close(fd); /* only read from: nothing to lose */
     return status;
-}
-
-bool pack_file_is(const pack_file *pack, const char *path) {
-    struct stat s;
-    return stat(path, &s) == 0 && s.st_dev == pack->device && s.st_ino == pack->inode;
 }
 
 void pack_file_unmap(pack_file *pack) {

@@ -77,6 +77,21 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses("scene.cfg --radius nan" OUT, VIT_USAGE, "metres, or auto");
     bake_refuses("scene.cfg --estimate guess" OUT, VIT_USAGE, "list or buckets");
     bake_refuses("scene.cfg --threads many" OUT, VIT_USAGE, "--threads");
+    bake_refuses("scene.cfg --frames 4294967298" OUT, VIT_USAGE, "--frames"); /* 2^32 + 2 */
+    bake_refuses("scene.cfg --frames 18446744073709551618" OUT, VIT_USAGE, "--frames"); /* 2^64 + 2 */
+    bake_refuses("scene.cfg --frames 2x" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --frames +2" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --frames 0x2" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --frames=" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --frames --quiet" OUT, VIT_USAGE, "--frames");
+    bake_refuses("scene.cfg --quiet=1" OUT, VIT_USAGE, "takes no value");
+    bake_refuses("scene.cfg --radius 0x1p3" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --radius 0.5m" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --size=80x45x3" OUT, VIT_USAGE, "WIDTHxHEIGHT");
+    bake_refuses("scene.cfg --size=80x4294967341" OUT, VIT_USAGE, "WIDTHxHEIGHT"); /* 2^32 + 45 */
+    bake_refuses("scene.cfg -o --explain", VIT_USAGE, "-o");
+    bake_refuses("scene.cfg --output=-", VIT_USAGE, "--output: a file");
+    bake_refuses("-" OUT, VIT_USAGE, "standard input");
     bake_refuses(TEST_SCENES "/furnace.cfg --tile 24" OUT, VIT_USAGE, "--tile");
     bake_refuses(TEST_SCENES "/furnace.cfg --indirect-samples 2" OUT, VIT_USAGE, "--indirect-samples");
     bake_refuses(TEST_SCENES "/furnace.cfg --texture-filter cubic" OUT, VIT_USAGE, "--texture-filter");
@@ -90,6 +105,16 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses(TEST_SCENES "/furnace.cfg --effects photons" OUT, VIT_USAGE,
                  "names with commas"); /* not of surfaces, the sky or pixels */
     bake_refuses(TEST_SCENES "/furnace.cfg --effects" OUT, VIT_USAGE, "--effects");
+}
+
+static void an_option_and_its_value_may_be_one_word(void **state) {
+    (void)state;
+    tool(&r, TOOL_BAKE " --quiet --device=host --size=16x12 --frames=1 --photons=10 " TEST_SCENES "/furnace.cfg --output=" FOLDER "/out.vit");
+    tool_succeeds(&r);
+    tool(&r, TOOL_PLAY " --quiet --device=host --explain " FOLDER "/out.vit");
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.out, "16x12"));
+    assert_int_equal(empty(FOLDER), 1);
 }
 
 static void the_baker_names_a_file_that_is_missing(void **state) {
@@ -379,6 +404,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_baker_refuses_options_that_it_does_not_know),
         cmocka_unit_test(the_baker_refuses_values_out_of_range),
+        cmocka_unit_test(an_option_and_its_value_may_be_one_word),
         cmocka_unit_test(the_baker_names_a_file_that_is_missing),
         cmocka_unit_test(the_baker_refuses_bad_scenes_with_file_and_line),
         cmocka_unit_test(a_missing_texture_is_an_error_only_if_strict),

@@ -1,0 +1,14 @@
+/* cost_outputs.c: what vitrine-cost writes, looked at before the work. */
+#ifndef VIT_COST_OUTPUTS_H
+#define VIT_COST_OUTPUTS_H
+
+#include "cost_options.h"
+#include "pipeline.h"
+
+/* VIT_FAILED: a file of -o, --write or --cache could not be written, or there is no such device. VIT_BAD_INPUT: --write is no
+ * scene. */
+vit_status cost_outputs_check(const cost_options *o, vit_text *why);
+/* VIT_USAGE: one of them is a file that is read, as far as these are known by now. */
+vit_status cost_outputs_are_no_inputs(const cost_options *o, const pipeline *p, vit_text *why);
+
+#endif
