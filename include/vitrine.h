@@ -149,6 +149,12 @@ typedef struct vit vit;
 /* "OpenCL platform / device / driver" of device `index`, or of VIT_DEVICE_HOST; NULL beyond the last of OpenCL. The text lives in `why`. */
 const char *vit_device_name(uint32_t index, vit_text *why);
 
+/* The device that `name` means: a number, as vit_device_name() counts; "host"; "gpu" or "cpu", as OpenCL has it; or a part of what
+ * vit_device_name() says, in upper or lower case, of the platform's name before the rest ("nvidia"; "pocl" is PoCL's). Numbers are not stable:
+ * they follow the order in which OpenCL's loader finds platforms. VIT_FAILED: there is none. VIT_USAGE: it means several that do not
+ * have the same name, or is empty. The text lists what there is. */
+vit_status vit_device_find(const char *name, uint32_t *index, vit_text *why);
+
 /* 0, the first device of OpenCL; VIT_DEVICE_HOST if there is none. */
 uint32_t vit_device_default(void);
 
@@ -156,7 +162,9 @@ uint32_t vit_device_default(void);
  * VIT_BAD_INPUT: the text names section and cause. VIT_USAGE: an option is out of range. */
 vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why);
 
-/* Checks again, builds the kernels, makes every buffer. VIT_FAILED: no such device, out of device memory, a build error. */
+/* Checks again, builds the kernels, makes every buffer, and lets the device run what it does at a kernel's first run only, so that the first
+ * vit_frame() takes no longer than the next. VIT_FAILED: no such device, out of device memory, a build error. VIT_USAGE: an option is out
+ * of range, also of what the device can do (group). */
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why);
 
 /* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it. Without a copy if it is

@@ -30,6 +30,8 @@ typedef struct vit_device {
     /* After an error close() is still to be called. All buffers begin as zeros or with the pack's data. */
     vit_status (*open)(const vit_device_setup *setup, vit_text *why);
     void (*close)(void *state);
+    /* Buffers as open() left them. NULL: nothing of a device's work is left to its first frame, so that it needs no frame before. */
+    vit_status (*rewind)(void *state, vit_text *why);
     /* Puts one run of a pass behind those before it. */
     vit_status (*run)(void *state, const vit_step *step, vit_text *why);
     vit_status (*clear)(void *state, vit_buffer b, vit_text *why);
@@ -46,6 +48,8 @@ extern const vit_device vit_device_host;
 extern const vit_device vit_device_opencl;
 /* "platform / device / driver" of OpenCL device `index`; NULL: there is none, and `why` says why. */
 const char *vit_opencl_name(uint32_t index, vit_text *why);
+/* Is OpenCL device `index` a GPU, or, with gpu 0, a CPU? */
+int vit_opencl_is(uint32_t index, int gpu);
 #endif
 
 /* "Vitrine / host / ..." of the built-in device. */

@@ -176,5 +176,5 @@ static void times(void *state, double *pass_ms) {
     memset(d->pass_ms, 0, sizeof d->pass_ms);
 }
 
-const vit_device vit_device_host = {sizeof(host_device), memory_bytes, suit, open_device, close_device, run, clear,
+const vit_device vit_device_host = {sizeof(host_device), memory_bytes, suit, open_device, close_device, NULL, run, clear,
                                     read_buffer,         show,         times};

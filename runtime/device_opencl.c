@@ -43,6 +43,7 @@ static vit_status failed(vit_text *why, const char *call, cl_int error) {
 static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
     cl_platform_id platforms[MAX_PLATFORMS];
     cl_uint platform_count = 0, seen = 0;
+    char without[200] = ""; /* platforms that are installed, but have no device: PoCL without a place for its cache */
     cl_int e = clGetPlatformIDs(MAX_PLATFORMS, platforms, &platform_count);
     if (e != CL_SUCCESS)
         return failed(why, "clGetPlatformIDs", e);
@@ -51,8 +52,13 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
     for (cl_uint p = 0; p < platform_count; p++) {
         cl_device_id devices[MAX_DEVICES];
         cl_uint count = 0;
-        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, MAX_DEVICES, devices, &count) != CL_SUCCESS)
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, MAX_DEVICES, devices, &count) != CL_SUCCESS || count == 0) {
+            char name[100] = "?";
+            size_t n = strlen(without);
+            clGetPlatformInfo(platforms[p], CL_PLATFORM_NAME, sizeof name, name, NULL);
+            snprintf(without + n, sizeof without - n, "%s%s", n > 0 ? ", " : "; without a device: ", name);
             continue;
+        }
         if (count > MAX_DEVICES)
             count = MAX_DEVICES;
         if (index < seen + count) {
@@ -61,7 +67,10 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
         }
         seen += count;
     }
-    snprintf(why->text, sizeof why->text, "OpenCL: there is no device %u, only %u", index, seen);
+    if (seen > 1)
+        snprintf(why->text, sizeof why->text, "OpenCL: there is no device %u, only 0 to %u, and host%s", index, seen - 1, without);
+    else
+        snprintf(why->text, sizeof why->text, "OpenCL: there is no device %u, only %shost%s", index, seen > 0 ? "0 and " : "", without);
     return VIT_FAILED;
 }
 
@@ -79,6 +88,32 @@ const char *vit_opencl_name(uint32_t index, vit_text *why) {
     return why->text;
 }
 
+/* The greatest power of two up to n and 256. */
+static uint32_t group_up_to(size_t n) {
+    uint32_t group = 256;
+    while (group > 1 && group > n)
+        group /= 2;
+    return group;
+}
+
+static uint32_t lesser(uint32_t a, uint32_t b) {
+    return a < b ? a : b;
+}
+
+static vit_status refuse_group(const char *what, uint32_t asked, uint32_t most, vit_text *why) {
+    snprintf(why->text, sizeof why->text, "group %u: %s takes at most %u work-items a work-group on this device (0: what suits)", asked, what, most);
+    return VIT_USAGE;
+}
+
+int vit_opencl_is(uint32_t index, int gpu) {
+    cl_device_id id;
+    cl_device_type type = 0;
+    vit_text unused;
+    if (find(index, &id, &unused) == VIT_OK)
+        clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+    return (type & (gpu ? CL_DEVICE_TYPE_GPU : CL_DEVICE_TYPE_CPU)) != 0;
+}
+
 static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
     cl_device_id id;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
@@ -90,15 +125,17 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
     clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof width, &width, NULL);
     clGetDeviceInfo(id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof most, &most, NULL);
     int cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
-    uint32_t top = most < 256 ? (uint32_t)most : 256;
+    const uint32_t top = group_up_to(most);
+    if (l->group > top)
+        return refuse_group("OpenCL", l->group, top, why);
     if (l->lanes == 0)
         l->lanes = !cpu ? 1 : width >= 16 ? 16 : 8;
     if (l->group > 0) { /* asked for: everywhere the same */
         l->scan_group = l->splat_group = l->group;
     } else {
-        l->group = cpu ? 16 : top < 64 ? top : 64;
+        l->group = lesser(cpu ? 16 : 64, top);
         l->scan_group = cpu ? 1 : top;
-        l->splat_group = cpu ? 1 : 32;
+        l->splat_group = lesser(cpu ? 1 : 32, top);
     }
     l->run = cpu ? s->tile * s->tile : 16;
     l->chunks = cpu ? 16 : VIT_CHUNKS;
@@ -122,7 +159,20 @@ static int build_options(char *text, size_t size, const vit_limits *l, int wide_
     return n < (int)size;
 }
 
-static vit_status build(vit_opencl *d, const vit_limits *l, vit_text *why) {
+/* A kernel may have room for fewer work-items than the device, for want of registers. */
+static vit_status make_kernel(vit_opencl *d, uint32_t pass, uint32_t asked_group, vit_text *why) {
+    const char *name = vit_passes[pass].name;
+    size_t most = 256;
+    cl_int e;
+    d->kernels[pass] = clCreateKernel(d->program, name, &e);
+    if (e != CL_SUCCESS)
+        return failed(why, name, e);
+    clGetKernelWorkGroupInfo(d->kernels[pass], d->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
+    d->most[pass] = group_up_to(most);
+    return asked_group > d->most[pass] ? refuse_group(name, asked_group, d->most[pass], why) : VIT_OK;
+}
+
+static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group, vit_text *why) {
     char options[4096];
     cl_int e;
     if (!build_options(options, sizeof options, l, d->wide_divide))
@@ -142,14 +192,11 @@ static vit_status build(vit_opencl *d, const vit_limits *l, vit_text *why) {
         }
         return VIT_FAILED;
     }
-    for (uint32_t p = 0; p < vit_pass_count; p++) {
-        if (!vit_pass_called(p, l))
-            continue;
-        d->kernels[p] = clCreateKernel(d->program, vit_passes[p].name, &e);
-        if (e != CL_SUCCESS)
-            return failed(why, vit_passes[p].name, e);
-    }
-    return VIT_OK;
+    vit_status status = VIT_OK;
+    for (uint32_t p = 0; p < vit_pass_count && status == VIT_OK; p++)
+        if (vit_pass_called(p, l))
+            status = make_kernel(d, p, asked_group, why);
+    return status;
 }
 
 static vit_status clear(void *state, vit_buffer b, vit_text *why) {
@@ -162,7 +209,7 @@ static vit_status clear(void *state, vit_buffer b, vit_text *why) {
 }
 
 /* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat. */
-static vit_status make_buffer(vit_opencl *d, uint32_t b, const vit_pack *pack, void *framebuffer, vit_text *why) {
+static vit_status make_buffer(vit_opencl *d, uint32_t b, void *framebuffer, vit_text *why) {
     uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
     vit_section section = vit_buffer_sections[b];
     cl_int e;
@@ -170,7 +217,7 @@ static vit_status make_buffer(vit_opencl *d, uint32_t b, const vit_pack *pack, v
         return VIT_OK;
     if (section != VIT_SECTION_NONE) {
         cl_mem_flags flags = CL_MEM_READ_ONLY | (d->is_cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR);
-        d->buffers[b] = clCreateBuffer(d->context, flags, (size_t)bytes, (void *)(uintptr_t)pack->section[section], &e);
+        d->buffers[b] = clCreateBuffer(d->context, flags, (size_t)bytes, (void *)(uintptr_t)d->pack->section[section], &e);
         return e == CL_SUCCESS ? VIT_OK : failed(why, vit_buffer_names[b], e);
     }
     void *host = b == B_framebuffer && d->is_cpu ? framebuffer : NULL;
@@ -180,12 +227,12 @@ static vit_status make_buffer(vit_opencl *d, uint32_t b, const vit_pack *pack, v
     return clear(d, (vit_buffer)b, why);
 }
 
-static vit_status upload_baked_photons(vit_opencl *d, const vit_pack *pack, vit_text *why) {
-    const vit_scene *s = pack->scene;
+static vit_status upload_baked_photons(vit_opencl *d, vit_text *why) {
+    const vit_scene *s = d->scene;
     size_t size = s->baked * sizeof(vit_photon), at = (s->photons - s->baked) * sizeof(vit_photon);
     if (s->baked == 0 || !d->buffers[B_photons])
         return VIT_OK;
-    cl_int e = clEnqueueWriteBuffer(d->queue, d->buffers[B_photons], CL_TRUE, at, size, pack->section[VIT_SECTION_PHOT], 0, NULL, NULL);
+    cl_int e = clEnqueueWriteBuffer(d->queue, d->buffers[B_photons], CL_TRUE, at, size, d->pack->section[VIT_SECTION_PHOT], 0, NULL, NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueWriteBuffer", e);
 }
 
@@ -244,11 +291,11 @@ static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text
     d->queue = clCreateCommandQueue(d->context, d->id, d->profile ? CL_QUEUE_PROFILING_ENABLE : 0, &e);
     if (e != CL_SUCCESS)
         return failed(why, "clCreateCommandQueue", e);
-    vit_status status = build(d, d->limits, why);
+    vit_status status = build(d, d->limits, setup->info->group, why);
     for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
-        status = make_buffer(d, b, setup->pack, setup->info->framebuffer, why);
+        status = make_buffer(d, b, setup->info->framebuffer, why);
     if (status == VIT_OK)
-        status = upload_baked_photons(d, setup->pack, why);
+        status = upload_baked_photons(d, why);
     if (status == VIT_OK)
         status = set_arguments(d, why);
     if (status == VIT_OK && (e = clFinish(d->queue)) != CL_SUCCESS)
@@ -258,6 +305,7 @@ static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text
 
 static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
     vit_opencl *d = setup->state;
+    d->pack = setup->pack;
     d->scene = setup->pack->scene;
     d->limits = setup->limits;
     d->profile = setup->info->profile != 0;
@@ -286,6 +334,15 @@ static void close_device(void *state) {
     memset(d, 0, sizeof *d);
 }
 
+static vit_status rewind_buffers(void *state, vit_text *why) {
+    vit_opencl *d = state;
+    vit_status status = VIT_OK;
+    for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
+        if (d->buffers[b] && vit_buffer_sections[b] == VIT_SECTION_NONE)
+            status = clear(d, (vit_buffer)b, why);
+    return status == VIT_OK ? upload_baked_photons(d, why) : status;
+}
+
 static vit_status set_varying(vit_opencl *d, const vit_step *step, vit_text *why) {
     const uint32_t pass = step->pass;
     for (uint32_t i = 0; vit_passes[pass].args[i] != V_END; i++) {
@@ -308,7 +365,11 @@ static vit_status run(void *state, const vit_step *step, vit_text *why) {
     const uint32_t pass = step->pass;
     size_t local, global;
     cl_event *event = NULL;
-    vit_pass_size(&vit_passes[pass], d->scene, d->limits, step->level, &local, &global);
+    vit_limits l = *d->limits;
+    l.group = lesser(l.group, d->most[pass]);
+    l.scan_group = lesser(l.scan_group, d->most[pass]);
+    l.splat_group = lesser(l.splat_group, d->most[pass]);
+    vit_pass_size(&vit_passes[pass], d->scene, &l, step->level, &local, &global);
     vit_status status = set_varying(d, step, why);
     if (status != VIT_OK || global == 0)
         return status;
@@ -378,4 +439,4 @@ static size_t memory_bytes(const vit_scene *s, const vit_limits *l, int in_place
     return 0;
 }
 
-const vit_device vit_device_opencl = {sizeof(vit_opencl), memory_bytes, suit, open_device, close_device, run, clear, read_buffer, show, times};
+const vit_device vit_device_opencl = {sizeof(vit_opencl), memory_bytes, suit, open_device, close_device, rewind_buffers, run, clear, read_buffer, show, times};

@@ -6,6 +6,7 @@
 #include <CL/cl.h>
 
 typedef struct vit_opencl {
+    const vit_pack *pack;
     const vit_scene *scene;
     const vit_limits *limits;
     cl_device_id id;
@@ -13,6 +14,7 @@ typedef struct vit_opencl {
     cl_command_queue queue;
     cl_program program;
     cl_kernel kernels[VIT_MAX_PASSES];
+    uint32_t most[VIT_MAX_PASSES]; /* work-items of a work-group that the kernel can be run with here, a power of two */
     cl_mem buffers[B_COUNT];
     int is_cpu, profile;
     int wide_divide;           /* floats are divided as doubles: VIT_WIDE_DIVIDE in strict.clh */

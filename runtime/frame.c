@@ -51,6 +51,10 @@ static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_
     return status;
 }
 
+vit_status vit_walk(vit *v, uint32_t frame, vit_text *why) {
+    return walk(v, frame, NULL, NULL, why);
+}
+
 static vit_status check_index(const vit *v, uint32_t index, vit_text *why) {
     if (index < v->pack.scene->frames)
         return VIT_OK;
@@ -65,7 +69,7 @@ vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, v
         status = VIT_USAGE;
     }
     if (status == VIT_OK)
-        status = walk(v, index, NULL, NULL, why);
+        status = vit_walk(v, index, why);
     if (status == VIT_OK && (status = v->device->show(v->state, framebuffer, stride, why)) != VIT_OK)
         vit_note_fault(v, VIT_MAX_PASSES, index);
     if (v->profile)

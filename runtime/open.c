@@ -149,6 +149,24 @@ static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, co
     return VIT_OK;
 }
 
+/* Devices leave work to the first run of a kernel: PoCL compiles it again for its size of work-group, drivers of GPUs load it. So frame 0
+ * is run once, with all its sizes, and what it left behind is taken back. */
+static vit_status warm_up(vit *v, vit_text *why) {
+    if (!v->device->rewind)
+        return VIT_OK;
+    vit_status status = vit_walk(v, 0, why);
+    if (status == VIT_OK)
+        status = v->device->show(v->state, NULL, 0, why);
+    if (status == VIT_OK)
+        status = v->device->rewind(v->state, why);
+    if (status == VIT_OK)
+        status = v->device->show(v->state, NULL, 0, why);
+    if (v->profile)
+        v->device->times(v->state, v->pass_ms);
+    memset(v->pass_ms, 0, sizeof v->pass_ms);
+    return status;
+}
+
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     vit_pack pack;
     vit_limits l;
@@ -164,6 +182,8 @@ vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     if (status != VIT_OK)
         return status;
     status = device->open(&setup, why);
+    if (status == VIT_OK)
+        status = warm_up(v, why);
     if (status == VIT_OK)
         *out = v;
     else

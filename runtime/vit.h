@@ -23,6 +23,9 @@ struct vit {
     uint64_t noted;            /* faults put into it */
 };
 
+/* frame.c: puts the passes of a frame behind one another; they may still run. */
+vit_status vit_walk(vit *v, uint32_t frame, vit_text *why);
+
 void vit_note_fault(vit *v, uint32_t pass, uint32_t frame);
 
 #endif

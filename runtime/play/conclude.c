@@ -58,8 +58,10 @@ static void summarise(const player *p) {
     const play_options *o = p->options;
     if (p->pacing.late > 0)
         (void)fprintf(stderr, "%" PRIu64 " frames were late\n", p->pacing.late);
+    vit_text name;
+    const char *device = vit_device_name(p->info.device, &name);
     if (options_plays(o))
-        report_summary(&p->report,
+        report_summary(&p->report, device != NULL ? device : "a device that is gone",
                        o->verify                 ? "; every hash is the pack's"
                        : o->out_given || o->hash ? ""
                                                  : "; none kept (no --out)",

@@ -1,9 +1,11 @@
 /* vitrine-play: maps a pack, opens it with libvitrine, plays its frames into a sink, and says how it went.
  * Flow: options -> pack -> vit_require -> (explain, or: arena -> vit_open -> sink -> frames -> counting -> report -> budgets).
  */
+#include "device.h"
 #include "failure.h"
 #include "outputs.h"
 #include "player.h"
+#include "pocl_cache.h"
 #include "sinks/output.h"
 #include <stdlib.h>
 #include <string.h>
@@ -26,15 +28,7 @@ static void catch_signals(void) {
     (void)sigaction(SIGINT, &stop, NULL);
     (void)sigaction(SIGTERM, &stop, NULL);
     (void)sigaction(SIGPIPE, &ignore, NULL);
-}
-
-static vit_status list_devices(vit_text *why) {
-    vit_text name;
-    uint32_t count = 0;
-    for (const char *text; (text = vit_device_name(count, &name)) != NULL; count++)
-        (void)printf("%u %s\n", count, text);
-    (void)printf("host %s\n", vit_device_name(VIT_DEVICE_HOST, &name));
-    return output_flush_stdout(why);
+    (void)sigaction(SIGXFSZ, &ignore, NULL); /* likewise a file that gets larger than it may */
 }
 
 /* vit_require() with the file's name before what it says about the pack. */
@@ -106,18 +100,38 @@ static vit_status warm_up(player *p, vit_text *why) {
     return is_timed(p->options) ? vit_frame(p->v, p->first, p->pixels, p->need.frame_bytes / p->need.height, why) : VIT_OK;
 }
 
+static void tell_note(const vit_text *note) {
+    if (note->text[0] != '\0')
+        (void)fprintf(stderr, "vitrine-play: %s\n", note->text);
+}
+
+static vit_status open_vit(player *p, vit_text *why) {
+    vit_status status = require(p, why); /* the arena's size depends on the device */
+    if (status == VIT_OK)
+        status = take_memory(&p->arena, p->need.host_bytes, 64, "library's arena", why);
+    p->info.arena = p->arena;
+    p->info.arena_size = p->need.host_bytes;
+    return status == VIT_OK ? vit_open(&p->info, &p->v, why) : status;
+}
+
+/* A device that nobody asked for need not be able to. */
+static vit_status open_or_fall_back(player *p, vit_text *why) {
+    vit_text note = {""};
+    vit_status status = open_vit(p, why);
+    if (status != VIT_FAILED || !device_fall_back(p->options, &p->info, &note, why))
+        return status;
+    tell_note(&note);
+    free(p->arena);
+    return open_vit(p, why);
+}
+
 /* The sink comes last: it may empty a file, so by then nothing else should fail. */
 static vit_status open_all(player *p, vit_text *why) {
     const play_options *o = p->options;
-    vit_status status = take_memory(&p->arena, p->need.host_bytes, 64, "library's arena", why);
+    vit_status status = take_memory(&p->pixels, p->need.frame_bytes, PAGE, "framebuffer", why);
+    p->info.framebuffer = p->pixels;
     if (status == VIT_OK)
-        status = take_memory(&p->pixels, p->need.frame_bytes, PAGE, "framebuffer", why);
-    if (status == VIT_OK) {
-        p->info.arena = p->arena;
-        p->info.arena_size = p->need.host_bytes;
-        p->info.framebuffer = p->pixels;
-        status = vit_open(&p->info, &p->v, why);
-    }
+        status = open_or_fall_back(p, why);
     p->verdict = (verdict){.compare = o->verify, .print = o->hash, .format = o->format};
     if (status == VIT_OK)
         status = verdict_begin(&p->verdict, p->v, p->first, p->end, why);
@@ -205,14 +219,6 @@ static vit_status check_budgets(player *p, vit_text *why) {
     return status;
 }
 
-/* Nobody should wonder why it is slower than yesterday. */
-static uint32_t device_of(const play_options *o) {
-    uint32_t device = o->device_given ? o->device : vit_device_default();
-    if (!o->device_given && device == VIT_DEVICE_HOST && !o->quiet && !o->explain)
-        (void)fputs("vitrine-play: no OpenCL device (a driver makes one, PoCL for one): playing on the built-in device host\n", stderr);
-    return device;
-}
-
 static vit_status run_pack(player *p, vit_text *why) {
     const play_options *o = p->options;
     if (o->size != NULL)
@@ -222,7 +228,6 @@ static vit_status run_pack(player *p, vit_text *why) {
         return status;
     p->info = (vit_open_info){.pack = p->pack.bytes,
                               .pack_size = p->pack.size,
-                              .device = device_of(o),
                               .threads = o->threads,
                               .host_isa = o->host_isa,
                               .wide_divide = o->wide_divide,
@@ -233,7 +238,12 @@ static vit_status run_pack(player *p, vit_text *why) {
                               .profile = is_timed(o),
                               .max_nodes = o->max_nodes,
                               .max_list = o->max_list};
-    status = require(p, why);
+    vit_text note = {""};
+    status = device_choose(o, &p->info, &note, why);
+    if (!o->explain)
+        tell_note(&note);
+    if (status == VIT_OK)
+        status = require(p, why);
     if (status == VIT_OK && o->explain) {
         report_explain(o->pack, p->pack.size, &p->need, stdout);
         return VIT_OK;
@@ -259,7 +269,7 @@ static vit_status run(const play_options *o, vit_text *why) {
         return VIT_OK;
     }
     if (o->list_devices)
-        return list_devices(why);
+        return device_list(why);
     player p = {.options = o};
     vit_status status = run_pack(&p, why);
     pack_file_unmap(&p.pack);
@@ -271,6 +281,7 @@ int main(int argc, char **argv) {
     vit_text why = {""};
     play_options options;
     catch_signals();
+    pocl_cache_mend_environment();
     vit_status status = options_parse(argc, argv, &options, &why);
     if (status == VIT_OK)
         status = run(&options, &why);

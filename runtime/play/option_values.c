@@ -41,12 +41,9 @@ bool option_number(const char *text, const char *end, uint32_t *out) {
 }
 
 vit_status option_set_device(play_options *o, const char *value, vit_text *why) {
-    o->device_given = true;
-    o->device = VIT_DEVICE_HOST;
-    if (strcmp(value, "host") == 0)
-        return VIT_OK;
-    if (!option_number(value, value + strlen(value), &o->device) || o->device == VIT_DEVICE_HOST)
-        return play_fail(why, VIT_USAGE, "--device takes a number of --list-devices or host, got '%s'", value);
+    o->device = value;
+    if (value[0] == '\0' || value[0] == '-')
+        return play_fail(why, VIT_USAGE, "--device takes a number or a part of a name of --list-devices, gpu, cpu or host, got '%s'", value);
     return VIT_OK;
 }
 

@@ -43,8 +43,9 @@ static const option table[] = {
     WORD("view", "NAME", option_set_view, "what the frames show; see Views (default: final)"),
     WORD("format", "NAME", option_set_format, "pixels of null and raw; see Formats (default: xrgb8888)"),
     FLAG("list-devices", list_devices, "index and name of each device; host is built in and needs no OpenCL"),
-    WORD("device", "N|host", option_set_device,
-         "play on device N of --list-devices, or on the built-in one (default: 0; host if there is no OpenCL)"),
+    WORD("device", "NAME|N", option_set_device,
+         "play on this device: a part of its name (pocl, nvidia), gpu, cpu, host, or its number in --list-devices, which may change "
+         "(default: OpenCL's first; host if that cannot play)"),
     NUMBER("threads", threads, 1, "of the device host (default: one a processor); changes no bit"),
     WORD("host-isa", "NAME", option_set_host_isa,
          "instructions for the device host: baseline, avx2, avx512 (default: the best); changes no bit"),
@@ -210,7 +211,7 @@ void options_help(FILE *to) {
                 "  vitrine-play scene.vit --out y4m:- | ffmpeg -i - scene.mp4\n"
                 "  vitrine-play scene.vit --out y4m:- --fps --loop 10 | mpv -\n"
                 "  vitrine-play scene.vit --verify && echo the same bits\n"
-                "  vitrine-play scene.vit --report --device 1\n"
+                "  vitrine-play scene.vit --report --device pocl\n"
                 "  vitrine-play scene.vit --verify --device host --threads 2\n"
                 "  vitrine-play scene.vit --budget 33 --report times.json\n"
                 "  vitrine-play scene.vit --budget visibility=5,33 --budget-percentile 99\n"

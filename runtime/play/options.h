@@ -16,8 +16,8 @@ typedef struct play_options {
     uint32_t loop;       /* times the range is played, >= 1 */
     vit_view view;
     vit_format format;
-    uint32_t device, threads, lanes, group, max_nodes, max_list; /* as in vit_open_info */
-    bool device_given;                                  /* else the default, which only looking for OpenCL can tell */
+    uint32_t threads, lanes, group, max_nodes, max_list; /* as in vit_open_info */
+    const char *device;                                 /* as vit_device_find() takes it; NULL: the default */
     const char *host_isa;                               /* as in vit_open_info */
     const char *size;                                   /* not NULL: was asked for, and will be refused */
     const char *report_file;                            /* NULL: no JSON */
