@@ -1,4 +1,5 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
+#include "check.h"
 #include "cost/adds.h"
 #include "cost/fit_pack.h"
 #include "options.h"
@@ -93,7 +94,7 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     warn_of_missed_effects(b);
-    return VIT_OK;
+    return p->scene.check ? check_pack(p, &b->packed, why) : VIT_OK;
 }
 
 /* A line each: name, what it adds, why. */

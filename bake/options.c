@@ -65,7 +65,7 @@ static bool flag(const char *name, options *o) {
     const struct {
         const char *name;
         bool *to;
-    } flags[] = {{"--explain", &o->explain},  {"--strict", &o->strict}, {"--quiet", &o->quiet}, {"--all-formats", &o->all_formats},
+    } flags[] = {{"--explain", &o->explain},  {"--strict", &o->strict}, {"--quiet", &o->quiet}, {"--all-formats", &o->all_formats}, {"--no-check", &o->no_check},
                  {"--version", &o->version}, {"--help", &o->help},     {"-h", &o->help}};
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++)
         if (strcmp(name, flags[i].name) == 0)
@@ -202,6 +202,7 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
         s->height = o->height;
     }
     s->frames = o->frames ? o->frames : s->frames;
+    s->check = s->check && !o->no_check;
     q->photons = o->photons >= 0 ? o->photons : q->photons;
     q->bounces = o->bounces ? o->bounces : q->bounces;
     q->tile = o->tile ? o->tile : q->tile;
@@ -250,6 +251,7 @@ void options_help(void) {
          "  --explain             effects with what each adds in bytes and work, bounds, buffers; with -o the pack is written too\n"
          "  --strict              a missing texture is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
+         "  --no-check            does not compare the picture with path tracing (else seconds)\n"
          "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
          "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
          "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"

@@ -6,7 +6,7 @@
 
 typedef struct options {
     const char *input, *output;
-    bool explain, strict, quiet, all_formats, help, version;
+    bool explain, strict, quiet, all_formats, no_check, help, version;
     unsigned threads;          /* 0: all cores */
     uint32_t device;
     bool device_given;         /* else the default */

@@ -24,6 +24,7 @@ static const field top_fields[] = {
     {"materials", FIELD_OTHER, 0, NULL},
     {"quality", FIELD_OTHER, 0, NULL},
     {"effects", FIELD_OTHER, 0, NULL},
+    {"check", FIELD_SWITCH, offsetof(scene, check), NULL},
 };
 
 static const field output_fields[] = {
@@ -262,7 +263,7 @@ static bool read_top(reader *r, const config_setting_t *root) {
 }
 
 static void set_defaults(scene *s) {
-    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .sky = {.scale = 1.0}};
+    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .check = true, .sky = {.scale = 1.0}};
     s->quality = (scene_quality){.photons = 17000,
                                  .bounces = 4,
                                  .tile = 32,

@@ -135,6 +135,7 @@ typedef struct scene {
     int effects_choice;        /* EFFECTS_* */
     uint64_t effects;          /* EFFECTS_LISTED: VIT_BIT() of those named */
     inputs files;              /* the scene file, what it includes, and the files that it names */
+    bool check;                /* the baker compares its picture with path tracing */
     bool automatic;            /* no scene file: camera and light are made from the model's box (tracks.c) */
 } scene;
 

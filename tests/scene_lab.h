@@ -119,7 +119,7 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
 static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *options) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit");
-    (void)snprintf(line, sizeof line, "%s -o %s --quiet --device host %s",
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet --no-check --device host %s",
                    scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
 }

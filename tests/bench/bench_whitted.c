@@ -62,7 +62,7 @@ static bool write_bunny(const char *mesh, const char *path) {
 
 /* False if the scene is not at hand. */
 static bool bake(const whitted_scene *s, size_t mode, char out[BENCH_PATH]) {
-    char mesh[BENCH_PATH], cfg[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", to[] = "-o", quiet[] = "--quiet",
+    char mesh[BENCH_PATH], cfg[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", to[] = "-o", quiet[] = "--quiet", no_check[] = "--no-check",
                                             effects[] = "--effects", chosen[64], antialias[] = "--antialias", copies[32];
     if (!scene_mesh_path(&s->mesh, mesh))
         return false;
@@ -77,7 +77,7 @@ static bool bake(const whitted_scene *s, size_t mode, char out[BENCH_PATH]) {
     const bool none = s->effects[0] != 0 && strcmp(modes[mode].effects, "none") == 0; /* of its own, but the materials' */
     snprintf(chosen, sizeof chosen, "%.*s%s", (int)strlen(s->effects) - none, s->effects, none ? "" : modes[mode].effects);
     snprintf(copies, sizeof copies, "%s", modes[mode].antialias);
-    char *const argv[] = {baker, cfg, to, out, quiet, effects, chosen, antialias, copies, NULL};
+    char *const argv[] = {baker, cfg, to, out, quiet, no_check, effects, chosen, antialias, copies, NULL};
     child_run(argv, NULL, false);
     return true;
 }

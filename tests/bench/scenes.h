@@ -87,7 +87,7 @@ static inline bool is_newer(const char *path, const char *than) {
 /* Path of the pack of scene and size, baked if need be; false if the scene is not at hand. */
 static inline bool scene_pack(const bench_scene *s, const char *size, char out[BENCH_PATH]) {
     char mesh[BENCH_PATH], cfg[BENCH_PATH], picture[32], baker[] = VIT_BUILD_DIR "/vitrine-bake";
-    char to[] = "-o", size_option[] = "--size", quiet[] = "--quiet";
+    char to[] = "-o", size_option[] = "--size", quiet[] = "--quiet", no_check[] = "--no-check";
     if (!scene_mesh_path(s, mesh))
         return false;
     bench_folder(BENCH_FOLDER);
@@ -98,7 +98,7 @@ static inline bool scene_pack(const bench_scene *s, const char *size, char out[B
     if (is_newer(out, cfg) && is_newer(out, baker) && is_newer(out, mesh))
         return true;
     printf("baking %s\n", out);
-    char *const argv[] = {baker, cfg, to, out, size_option, picture, quiet, NULL};
+    char *const argv[] = {baker, cfg, to, out, size_option, picture, quiet, no_check, NULL};
     child_run(argv, NULL, false);
     return true;
 }
