@@ -169,7 +169,7 @@ static void next_file(importer *im, const char *file) {
     im->uses = NULL;
     im->use_count = im->use_room = 0;
     im->bad_index = im->not_finite = im->clear = im->bad_polygon = 0;
-    im->warned_colors = im->shine_known = false;
+    im->warned_colors = false;
     free(im->means);
     im->means = NULL;
     im->mean_count = im->mean_room = 0;

@@ -5,12 +5,12 @@
 #include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define DEFAULT_EXPONENT 50.0f /* of a lobe, and index of glass, where nothing says either */
 #define DEFAULT_IOR 1.5f
 #define MOST_ABSORPTION 1e9f
-#define ALIKE 3 /* so many materials of one lobe are not a choice */
 
 static bool is_black(const float c[3]) {
     return !(c[0] > 0.0f || c[1] > 0.0f || c[2] > 0.0f);
@@ -36,7 +36,7 @@ static void make_glass(model_material *m, uint32_t kind, float ior) {
 
 typedef struct mtl {
     int illum; /* Assimp: 1 if the file has none */
-    float color[3], specular[3], filter[3], exponent, ior, alpha;
+    float color[3], ambient[3], specular[3], filter[3], exponent, ior, alpha;
 } mtl;
 
 static mtl read_mtl(const struct aiMaterial *ai) {
@@ -45,6 +45,7 @@ static mtl read_mtl(const struct aiMaterial *ai) {
     if (aiGetMaterialIntegerArray(ai, AI_MATKEY_OBJ_ILLUM, &m.illum, &one) != aiReturn_SUCCESS)
         m.illum = 0;
     (void)import_floats(ai, AI_MATKEY_COLOR_DIFFUSE, m.color, 3);
+    (void)import_floats(ai, AI_MATKEY_COLOR_AMBIENT, m.ambient, 3);
     (void)import_floats(ai, AI_MATKEY_COLOR_SPECULAR, m.specular, 3);
     (void)import_floats(ai, AI_MATKEY_COLOR_TRANSPARENT, m.filter, 3);
     (void)import_floats(ai, AI_MATKEY_SHININESS, &m.exponent, 1);
@@ -57,26 +58,60 @@ static mtl read_mtl(const struct aiMaterial *ai) {
     return m;
 }
 
-/* Many programs write the same Ks and Ns for everything that they export: nobody chose those. */
-static bool is_a_default(importer *im) {
-    mtl first = {.illum = 0};
-    bool same = true;
-    unsigned count = 0;
-    if (im->shine_known)
-        return im->shine_is_default;
-    for (unsigned i = 0; i < im->ai->mNumMaterials; i++) {
-        struct aiString name = {.length = 0};
-        (void)aiGetMaterialString(im->ai->mMaterials[i], AI_MATKEY_NAME, &name);
-        if (!strcmp(name.data, AI_DEFAULT_MATERIAL_NAME)) /* Assimp's own */
-            continue;
-        const mtl m = read_mtl(im->ai->mMaterials[i]);
-        if (count++ == 0)
-            first = m;
-        same = same && m.exponent == first.exponent && !memcmp(m.specular, first.specular, sizeof m.specular);
-    }
-    im->shine_known = true;
-    im->shine_is_default = same && count >= ALIKE;
-    return im->shine_is_default;
+/* Highlights that programs write for a material that nobody gave one. Each is known by both numbers, so that what others chose
+ * stays. */
+static const struct {
+    float specular, exponent; /* Ks, all channels; Ns */
+    const char *program;
+} defaults[] = {
+    {0.5f, 250.0f, "Blender"},     /* from 3.1: roughness 0.5, Ns = 1000 (1 - roughness)^2 */
+    {0.5f, 360.0f, "Blender"},     /* roughness 0.4 */
+    {0.5f, 225.0f, "Blender"},     /* 2.8 to 3.0: roughness 0.5, Ns = (30 (1 - roughness))^2 */
+    {0.5f, 324.0f, "Blender"},     /* roughness 0.4: 323.999994 */
+    {0.5f, 96.078431f, "Blender"}, /* to 2.7: hardness 50 */
+    {0.5f, 18.0f, "Maya"},         /* phong */
+    {0.9f, 10.0f, "3ds Max"},      /* specular colour and glossiness of a material whose specular level is 0 */
+    {0.898039f, 10.0f, "3ds Max"}, /* the same, in bytes */
+    {0.4f, 10.0f, "Assimp"},       /* of COLLADA without a highlight */
+};
+
+static bool is_grey(const float c[3], float level) {
+    for (int i = 0; i < 3; i++)
+        if (!(fabsf(c[i] - level) < 1e-4f))
+            return false;
+    return true;
+}
+
+/* The program whose default the highlight is, or NULL. It depends on the material alone. */
+static const char *default_of(const mtl *m) {
+    for (size_t i = 0; i < sizeof defaults / sizeof defaults[0]; i++)
+        if (is_grey(m->specular, defaults[i].specular) &&
+            fabsf(m->exponent - defaults[i].exponent) < 1e-4f * defaults[i].exponent)
+            return defaults[i].program;
+    return NULL;
+}
+
+/* Blender writes its Principled shader: Ks is a level, 0.5 of which means 4 % of dielectric reflection, and Ka is 1, or with
+ * illum 3 the metalness. Known by what its users leave: that level and the index. */
+static bool is_principled(const mtl *m) {
+    const float metallic = m->ambient[0];
+    const bool untouched = is_grey(m->specular, 0.5f) && (fabsf(m->ior - 1.45f) < 1e-4f || fabsf(m->ior - 1.5f) < 1e-4f);
+    return untouched && m->exponent >= 0.0f && m->exponent <= 1000.0f && is_grey(m->ambient, metallic) &&
+           (m->illum == 3 ? metallic > 0.0f && metallic <= 1.0f && !is_black(m->color) : m->illum == 2 && metallic == 1.0f);
+}
+
+static bool read_principled(importer *im, material_use *use, const mtl *m) {
+    float base[3], mean[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    const float metallic = m->illum == 3 ? m->ambient[0] : 0.0f, roughness = 1.0f - sqrtf(m->exponent / 1000.0f);
+    memcpy(base, use->m.albedo, sizeof base);
+    if (use->image[0] && metallic > 0.0f && glossy_exponent(roughness) > 0.0f &&
+        !import_texture_mean(im, use->image, NULL, true, mean))
+        return false;
+    for (int i = 0; i < 3; i++)
+        mean[i] *= base[i];
+    glossy_from_metallic(&use->m, base, mean, metallic, roughness);
+    im->m->principled++;
+    return true;
 }
 
 /* illum: 0, 1 have no highlights; 2 has; 3 and 5 mirror; 4, 6, 7 and 9 are transparent, 6 and 7 with refraction. What programs
@@ -99,6 +134,16 @@ static bool read_shine_mtl(importer *im, material_use *use, const struct aiMater
     float mean[4];
     if (m.illum < 2 || is_black(m.specular))
         return true;
+    const bool mapped = aiGetMaterialTextureCount(ai, aiTextureType_SPECULAR) > 0;
+    const char *program = m.illum == 3 || mapped ? NULL : default_of(&m);
+    if (program) {
+        if (im->m->default_highlights++ == 0)
+            (void)snprintf(im->m->default_highlight, sizeof im->m->default_highlight, "Ks %g, Ns %g: %s", (double)m.specular[0],
+                           (double)m.exponent, program);
+        return true;
+    }
+    if (!mapped && is_principled(&m))
+        return read_principled(im, use, &m);
     if (!import_texture_mean_of(im, ai, aiTextureType_SPECULAR, 0, to->name, mean))
         return false;
     for (int i = 0; i < 3; i++)
@@ -106,7 +151,7 @@ static bool read_shine_mtl(importer *im, material_use *use, const struct aiMater
     if ((m.illum == 3 || m.illum == 5) && !emits && largest(m.specular) >= largest(m.color)) {
         to->kind = VIT_MIRROR;
         memcpy(to->specular, m.specular, sizeof to->specular);
-    } else if (m.exponent >= 1.0f && !is_a_default(im)) {
+    } else if (m.exponent >= 1.0f) {
         memcpy(to->specular, m.specular, sizeof to->specular);
         to->exponent = fminf(m.exponent, VIT_MAX_EXPONENT);
     }

@@ -27,7 +27,6 @@ typedef struct importer {
     uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
     uint64_t bad_polygon;                  /* polygons dropped for an index or too many corners */
     bool warned_colors;
-    bool shine_known, shine_is_default; /* MTL: whether all materials have the same Ks and Ns */
     struct texture_mean *means;         /* that were asked for, of this file */
     size_t mean_count, mean_room;
 } importer;

@@ -67,6 +67,9 @@ typedef struct model {
     uint64_t not_triangles;    /* points and lines dropped */
     uint64_t warnings;         /* lines given to `warn` */
     inputs files;              /* that were read: meshes, what they refer to, textures */
+    uint32_t default_highlights; /* materials whose highlight is an exporter's default: they are matt */
+    char default_highlight[64];  /* the first of them */
+    uint32_t principled;         /* MTL materials taken by Blender's Principled shader */
 } model;
 
 /* One line, without a line feed, for the user to see. */

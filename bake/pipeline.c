@@ -47,6 +47,16 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
                             why);
 }
 
+/* What of MTL's highlights is not what the file's letter says. */
+static void say_highlights(const model *m, progress *p) {
+    if (m->default_highlights > 0)
+        progress_line(p, false, "the highlights of %u materials are what exporters write unasked (%s): matt ('specular' gives them one)",
+                      m->default_highlights, m->default_highlight);
+    if (m->principled > 0)
+        progress_line(p, false, "the highlights of %u materials (Ks 0.5, Ka grey) are Blender's Principled shader: 4 %% reflection at that level, or metal",
+                      m->principled);
+}
+
 /* Imports the meshes; if they lie far from the origin, moves the scene there and imports them again. */
 static vit_status import(pipeline *p, vit_text *why) {
     double origin[3];
@@ -60,6 +70,7 @@ static vit_status import(pipeline *p, vit_text *why) {
     }
     if (status != VIT_OK)
         return status;
+    say_highlights(&p->model, p->progress);
     double size = 0.0;
     for (int k = 0; k < 3; k++)
         size = fmax(size, p->model.hi[k] - p->model.lo[k]);

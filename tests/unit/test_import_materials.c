@@ -127,19 +127,85 @@ static void what_reflects_too_much_is_scaled_with_its_hues(void **state) {
     model_free(&m);
 }
 
-static void the_same_highlight_everywhere_is_a_default(void **state) {
+/* As Blender writes a material: Ka 1, the index that users leave. */
+#define BLENDER(name, kd, ns)                                                                                                  \
+    "newmtl " name "\nNs " ns "\nKa 1 1 1\nKd " kd "\nKs 0.5 0.5 0.5\nKe 0 0 0\nNi 1.45\nd 1\nillum 2\n"
+#define CHOSEN "newmtl %c\nKd 0.4 0.4 0.4\nKs 0.3 0.3 0.3\nNs 80\nillum 2\n"
+
+static void an_exporters_default_highlight_is_none_whatever_else_the_file_holds(void **state) {
+    static const char *const defaults[][2] = {{"0.5 0.5 0.5", "250"},
+                                              {"0.500000 0.500000 0.500000", "250.000000"},
+                                              {"0.5 0.5 0.5", "360.000000"},
+                                              {"0.5 0.5 0.5", "225.000000"},
+                                              {"0.5 0.5 0.5", "323.999994"},
+                                              {"0.500000 0.500000 0.500000", "96.078431"},
+                                              {"0.50 0.50 0.50", "18.00"},
+                                              {"0.9000 0.9000 0.9000", "10.0000"},
+                                              {"0.898039 0.898039 0.898039", "10.0000"},
+                                              {"0.4 0.4 0.4", "10"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof defaults / sizeof defaults[0]; i++)
+        for (int others = 0; others < 4; others++) { /* materials beside it, of a highlight that somebody chose */
+            char text[1024];
+            model m;
+            int used = snprintf(text, sizeof text, "newmtl a\nNs %s\nKd 0.8 0.7 0.6\nKs %s\nillum 2\n", defaults[i][1],
+                                defaults[i][0]);
+            for (int k = 1; k <= others; k++)
+                used += snprintf(text + used, sizeof text - (size_t)used, CHOSEN, 'a' + k);
+            import_mtl(text, 1 + others, "", &m);
+            if (!is_matt(&m.materials[0]) || !near3(m.materials[0].albedo, 0.8, 0.7, 0.6))
+                fail_msg("Ks %s, Ns %s beside %d others: a lobe", defaults[i][0], defaults[i][1], others);
+            assert_true(m.default_highlights == 1);
+            for (int k = 1; k <= others; k++)
+                assert_true(m.materials[k].exponent == 80.0f && near3(m.materials[k].specular, 0.3, 0.3, 0.3));
+            model_free(&m);
+        }
+}
+
+static void a_default_in_the_whole_file_is_told_by_its_first(void **state) {
     model m;
     (void)state;
-#define SAME(name, kd) "newmtl " name "\nKd " kd "\nKs 0.5 0.5 0.5\nNs 250\nillum 2\n"
-    import_mtl(SAME("a", "1 0 0") SAME("b", "0 1 0") SAME("c", "0 0 1"), 3, "", &m);
+    import_mtl(BLENDER("a", "1 0 0", "250.000000") BLENDER("b", "0 1 0", "250.000000") BLENDER("c", "0 0 1", "250.000000"), 3,
+               "", &m);
     for (int i = 0; i < 3; i++)
         assert_true(is_matt(&m.materials[i]) && m.materials[i].albedo[i] == 1.0f);
+    assert_int_equal(m.default_highlights, 3);
+    assert_string_equal(m.default_highlight, "Ks 0.5, Ns 250: Blender");
     model_free(&m);
-    import_mtl(SAME("a", "1 0 0") SAME("b", "0 1 0"), 2, "", &m); /* two may be meant */
-    assert_true(m.materials[0].exponent == 250.0f && m.materials[1].exponent == 250.0f);
-    model_free(&m);
-    import_mtl(SAME("a", "1 0 0") SAME("b", "0 1 0") "newmtl c\nKd 1 1 1\n", 3, "", &m);
-    assert_true(m.materials[0].exponent == 250.0f && is_matt(&m.materials[2]));
+}
+
+static void a_highlight_near_a_default_is_meant(void **state) {
+    static const char *const meant[][2] = {{"0.5 0.5 0.5", "40"},  {"0.5 0.5 0.5", "251"}, {"0.51 0.51 0.51", "250"},
+                                           {"0.5 0.5 0.4", "250"}, {"0.9 0.9 0.9", "40"},  {"0.8 0.8 0.8", "10"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof meant / sizeof meant[0]; i++) {
+        char text[512];
+        model m;
+        (void)snprintf(text, sizeof text, "newmtl a\nNs %s\nKa 0.1 0.1 0.1\nKd 0.05 0.05 0.05\nKs %s\nillum 2\n", meant[i][1],
+                       meant[i][0]);
+        import_mtl(text, 1, "", &m);
+        if (m.materials[0].exponent != strtof(meant[i][1], NULL) || m.materials[0].specular[0] != strtof(meant[i][0], NULL))
+            fail_msg("Ks %s, Ns %s: exponent %g, reflectance %g", meant[i][0], meant[i][1], (double)m.materials[0].exponent,
+                     (double)m.materials[0].specular[0]);
+        assert_true(m.default_highlights == 0 && m.principled == 0);
+        model_free(&m);
+    }
+}
+
+/* Level 0.5 is a reflection of 4 %; Ns is 1000 (1 - roughness)^2. */
+static void blenders_level_is_no_reflectance(void **state) {
+    model m;
+    (void)state;
+    import_mtl(BLENDER("a", "0.8 0.8 0.8", "490.000000")                                             /* roughness 0.3 */
+               BLENDER("b", "0.8 0.8 0.8", "40.000000")                                              /* 0.8: no lobe */
+               "newmtl c\nNs 490\nKa 1 1 1\nKd 0.3 0.2 0.1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 3\n", /* metal, no mirror */
+               3, "", &m);
+    assert_true(near3(m.materials[0].specular, 0.04, 0.04, 0.04) && near3(m.materials[0].albedo, 0.768, 0.768, 0.768));
+    assert_true(fabs((double)m.materials[0].exponent / (double)glossy_exponent(0.3f) - 1.0) < 1e-5);
+    assert_true(is_matt(&m.materials[1]) && near3(m.materials[1].albedo, 0.8, 0.8, 0.8));
+    assert_true(m.materials[2].kind == VIT_MATTE && near3(m.materials[2].specular, 0.3, 0.2, 0.1) &&
+                near3(m.materials[2].albedo, 0, 0, 0));
+    assert_true(m.default_highlights == 0 && m.principled == 3);
     model_free(&m);
 }
 
@@ -421,7 +487,10 @@ int main(void) {
         cmocka_unit_test(a_highlight_is_a_lobe_of_its_exponent),
         cmocka_unit_test(no_highlight_is_matt),
         cmocka_unit_test(what_reflects_too_much_is_scaled_with_its_hues),
-        cmocka_unit_test(the_same_highlight_everywhere_is_a_default),
+        cmocka_unit_test(an_exporters_default_highlight_is_none_whatever_else_the_file_holds),
+        cmocka_unit_test(a_default_in_the_whole_file_is_told_by_its_first),
+        cmocka_unit_test(a_highlight_near_a_default_is_meant),
+        cmocka_unit_test(blenders_level_is_no_reflectance),
         cmocka_unit_test(a_mirror_reflects_more_than_it_scatters),
         cmocka_unit_test(glass_must_be_transparent),
         cmocka_unit_test(roughness_and_metalness_make_lobes),
