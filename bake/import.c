@@ -104,7 +104,7 @@ static bool refuse_empty(importer *im) {
     if (im->bad_polygon)
         return import_fail(im, "has no triangle, and no polygon of at most 1024 corners whose indices are in range");
     if (im->clear)
-        return import_fail(im, "has no triangle that is not transparent: transparency is not simulated");
+        return import_fail(im, "has no triangle that is not transparent: transparency is not simulated; 'cutoff = 0' for its materials in the scene file shows them");
     return import_fail(im, "has no triangle");
 }
 
@@ -112,7 +112,7 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     const uint32_t before = im->m->triangles;
     if (!im->ai->mRootNode)
         return import_fail(im, "has no nodes");
-    if (!add_node(im, im->ai->mRootNode, mesh->transform, 0))
+    if (!import_transparency(im) || !add_node(im, im->ai->mRootNode, mesh->transform, 0))
         return false;
     im->m->not_finite += im->not_finite;
     if (im->m->triangles == before && im->s->mesh_count == 1)
@@ -125,8 +125,10 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
         import_warn(im, "%llu polygons with an index out of range or more than 1024 corners dropped",
                     (unsigned long long)im->bad_polygon);
     if (im->clear)
-        import_warn(im, "%llu triangles of transparent materials are left as holes: transparency is not simulated",
-                    (unsigned long long)im->clear);
+        import_warn(im,
+                    "%llu triangles of transparent materials ('%.100s') are left as holes: transparency is not simulated; 'cutoff = 0' for a "
+                    "material in a scene file shows it",
+                    (unsigned long long)im->clear, im->clear_name);
     if (im->m->triangles == before)
         import_warn(im, "has no triangle");
     return true;
@@ -169,6 +171,8 @@ static void next_file(importer *im, const char *file) {
     im->uses = NULL;
     im->use_count = im->use_room = 0;
     im->bad_index = im->not_finite = im->clear = im->bad_polygon = 0;
+    im->inverse = false;
+    im->shown = SHOWN_AS_SAID;
     im->warned_colors = false;
     free(im->means);
     im->means = NULL;

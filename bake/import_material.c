@@ -101,35 +101,33 @@ static void read_emission(importer *im, material_use *use, const struct aiMateri
 }
 
 /* glTF: alphaMode says what alpha means. MASK cuts out; BLEND, which is not simulated, becomes a cut-out or a hole. */
-static void read_alpha_gltf(material_use *use, const struct aiMaterial *ai) {
+static void read_alpha_gltf(const importer *im, material_use *use, const struct aiMaterial *ai) {
     struct aiString mode = {.length = 0};
-    float alpha = 1.0f, cutoff = 0.5f;
+    float cutoff = 0.5f;
     (void)aiGetMaterialString(ai, AI_MATKEY_GLTF_ALPHAMODE, &mode);
-    (void)import_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
     const bool mask = !strcmp(mode.data, "MASK");
     if (!mask && strcmp(mode.data, "BLEND") != 0)
         return;
     if (mask)
         (void)import_floats(ai, AI_MATKEY_GLTF_ALPHACUTOFF, &cutoff, 1);
-    use->m.alpha = import_clamp(alpha, 1.0f);
+    use->m.alpha = import_opacity(im, ai);
+    use->alpha_mapped = true;
     use->m.cutoff = import_clamp(cutoff, 1.0f);
 }
 
 /* OBJ and the rest: d is one number for all of it, map_d an image that has to be the colour texture's own alpha. */
 static void read_alpha_other(importer *im, material_use *use, const struct aiMaterial *ai) {
     struct aiString path;
-    float alpha = 1.0f;
-    (void)import_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
-    alpha = import_clamp(alpha, 1.0f);
+    const float alpha = import_opacity(im, ai);
     const bool mapped =
         aiGetMaterialTexture(ai, aiTextureType_OPACITY, 0, &path, NULL, NULL, NULL, NULL, NULL, NULL) == aiReturn_SUCCESS;
     if (mapped && strcmp(path.data, use->image) != 0)
         import_warn(im, "material '%.100s': opacity texture '%.200s' is not the colour texture; it is left out", use->m.name,
                     path.data);
-    if (alpha < 0.5f || (mapped && !strcmp(path.data, use->image))) {
-        use->m.alpha = alpha;
+    use->alpha_mapped = mapped && !strcmp(path.data, use->image);
+    use->m.alpha = alpha;
+    if (alpha < 0.5f || use->alpha_mapped)
         use->m.cutoff = 0.5f;
-    }
 }
 
 /* What the scene file says beats what the mesh says. */
@@ -147,8 +145,10 @@ static void apply_override(importer *im, material_use *use) {
         import_override_shine(im, &use->m, o);
         if (o->has_area_light)
             use->m.area_light = o->area_light;
-        if (o->has_cutoff)
+        if (o->has_cutoff) {
             use->m.cutoff = (float)o->cutoff;
+            use->cutoff_asked = true;
+        }
         if (o->has_texture) {
             memcpy(use->image, o->texture, sizeof use->image);
             use->image_resolved = true;
@@ -180,15 +180,14 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
     read_color(im, *use, ai);
     read_emission(im, *use, ai);
     if (im->gltf)
-        read_alpha_gltf(*use, ai);
+        read_alpha_gltf(im, *use, ai);
     else
         read_alpha_other(im, *use, ai);
     if (!import_shine(im, *use, ai))
         return false;
     apply_override(im, *use);
     import_settle_shine(&(*use)->m);
-    /* The texture's alpha is at most 1: below the cutoff without it, below with it. */
-    (*use)->hole = (*use)->m.alpha < (*use)->m.cutoff;
+    import_settle_holes(im, *use, ai);
     return true;
 }
 

@@ -207,6 +207,8 @@ static bool add_instance(importer *im, instance *in) {
     if (!import_material(im, mesh->mMaterialIndex, tint, &use))
         return false;
     if (use->hole) {
+        if (im->clear == 0)
+            memcpy(im->clear_name, use->m.name, sizeof im->clear_name);
         im->clear += in->triangles;
         return true;
     }

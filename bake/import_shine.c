@@ -58,6 +58,14 @@ static mtl read_mtl(const struct aiMaterial *ai) {
     return m;
 }
 
+static bool is_clear_illum(int illum) {
+    return illum == 4 || illum == 6 || illum == 7 || illum == 9;
+}
+
+bool import_is_glass_mtl(const struct aiMaterial *ai) {
+    return is_clear_illum(read_mtl(ai).illum);
+}
+
 /* Highlights that programs write for a material that nobody gave one. Each is known by both numbers, so that what others chose
  * stays. */
 static const struct {
@@ -124,7 +132,7 @@ static bool read_shine_mtl(importer *im, material_use *use, const struct aiMater
     const bool emits = !is_black(to->emission), refracts = m.illum == 6 || m.illum == 7;
     const bool filters = largest(m.filter) > 0.0f && (m.filter[0] < 1.0f || m.filter[1] < 1.0f || m.filter[2] < 1.0f);
     const bool clear = m.alpha < 1.0f || filters || (is_black(m.color) && !use->image[0]);
-    if ((refracts || m.illum == 4 || m.illum == 9) && clear && !emits) {
+    if (is_clear_illum(m.illum) && clear && !emits) {
         const bool body = refracts && m.ior > 1.0f;
         make_glass(to, body ? VIT_GLASS : VIT_THIN_GLASS, m.ior > 1.0f ? m.ior : DEFAULT_IOR);
         for (int i = 0; i < 3; i++)

@@ -7,6 +7,9 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
+/* Transparent materials that are shown after all, since too little would be left. */
+typedef enum import_shown { SHOWN_AS_SAID, SHOWN_INVISIBLE, SHOWN_HOLES } import_shown; /* none; those of alpha 0; all */
+
 /* One mesh file being read. */
 typedef struct importer {
     const scene *s;
@@ -26,6 +29,9 @@ typedef struct importer {
     uint64_t texels;           /* of all images so far */
     uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
     uint64_t bad_polygon;                  /* polygons dropped for an index or too many corners */
+    char clear_name[SCENE_NAME];           /* material of the first that was dropped for transparency */
+    bool inverse;                          /* the file's opacities are transparencies (import_transparency.c) */
+    import_shown shown;
     bool warned_colors;
     struct texture_mean *means;         /* that were asked for, of this file */
     size_t mean_count, mean_room;
@@ -37,6 +43,8 @@ typedef struct material_use {
     float tint[3];             /* constant vertex colour, 1 if none */
     model_material m;          /* image still -1 */
     bool hole;                 /* all of it is transparent: its triangles are dropped */
+    bool cutoff_asked;         /* the scene file has a cutoff for it */
+    bool alpha_mapped;         /* the colour texture's alpha counts */
     char image[SCENE_PATH];    /* file or "*index" as Assimp gives it; "" if none */
     bool image_resolved;       /* `image` comes from the scene file: take it as it is */
     unsigned uv_set;
@@ -98,6 +106,15 @@ bool import_without(importer *im, const char *material, const char *name, const 
 /* image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
  * names `material` (not strict) where it is missing or broken. */
 bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image);
+
+/* import_transparency.c: decides, before materials are read, how the file means transparency, and warns. */
+bool import_transparency(importer *im);
+/* 0..1, by that decision. */
+float import_opacity(const importer *im, const struct aiMaterial *ai);
+/* Sets `hole` by alpha, cutoff and that decision. */
+void import_settle_holes(const importer *im, material_use *use, const struct aiMaterial *ai);
+/* import_shine.c: MTL's `illum` says that light goes through. */
+bool import_is_glass_mtl(const struct aiMaterial *ai);
 
 /* import_normals.c: a unit normal for each of the 3 * triangles corners, in `normal` (9 floats a triangle).
  * position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of memory. */
