@@ -19,7 +19,7 @@ typedef struct query {
     vec3 origin, direction;
     float nearest; /* Embree's distance of the hit so far */
     uint32_t triangle;
-    uint32_t skip; /* a triangle that is not there, or VIT_NONE */
+    uint32_t covered; /* VIT_NONE, or a triangle that is not there itself: only what covers it counts (photon_rays_covered()) */
 } query;
 
 static float inverse(float d) {
@@ -50,6 +50,12 @@ static float plane_distance(const photon_scene *s, vec3 o, vec3 d, uint32_t tria
     return float_min(float_max(vec3_dot(n, vec3_sub(vec3_load(t->v0), o)) / across, enter), leave);
 }
 
+/* Is what lies at distance t before `triangle`'s place, from where the ray comes, seen instead of it? */
+static bool covers(const query *q, uint32_t triangle, float t) {
+    const float own = q->s->ray_offset;
+    return triangle < q->covered ? t < own * (1.0f + ONE_PLACE) : triangle > q->covered && t < own * (1.0f - ONE_PLACE);
+}
+
 /* Decides for Embree whether a hit at or before the nearest one counts. Ties go to the smallest index: which of two faces in
  * one place Embree meets first depends on its tree, and that on the number of threads. */
 static void accept_hit(const struct RTCFilterFunctionNArguments *f) {
@@ -60,7 +66,8 @@ static void accept_hit(const struct RTCFilterFunctionNArguments *f) {
     const bool further = ray->tfar > q->nearest || (!(ray->tfar < q->nearest) && triangle > q->triangle);
     if (f->valid[0] != -1)
         return;
-    if (further || triangle == q->skip || !(plane_distance(q->s, q->origin, q->direction, triangle) > 0.0f) ||
+    const float t = plane_distance(q->s, q->origin, q->direction, triangle);
+    if (further || !(t > 0.0f) || (q->covered != VIT_NONE && !covers(q, triangle, t)) ||
         !photon_opaque_at(q->s, q->origin, q->direction, triangle)) {
         f->valid[0] = 0;
         return;
@@ -69,8 +76,9 @@ static void accept_hit(const struct RTCFilterFunctionNArguments *f) {
     q->triangle = triangle;
 }
 
-static uint32_t nearest_but(const photon_rays *r, uint32_t skip, vec3 origin, vec3 direction, float *distance) {
-    query q = {.s = r->s, .origin = origin, .direction = direction, .nearest = INFINITY, .triangle = VIT_NONE, .skip = skip};
+static uint32_t nearest(const photon_rays *r, uint32_t covered, vec3 origin, vec3 direction, float *distance) {
+    query q = {
+        .s = r->s, .origin = origin, .direction = direction, .nearest = INFINITY, .triangle = VIT_NONE, .covered = covered};
     struct RTCRayHit h = {.ray = {.org_x = origin.x,
                                   .org_y = origin.y,
                                   .org_z = origin.z,
@@ -96,14 +104,12 @@ static uint32_t nearest_but(const photon_rays *r, uint32_t skip, vec3 origin, ve
 }
 
 uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, float *distance) {
-    return nearest_but(r, VIT_NONE, origin, direction, distance);
+    return nearest(r, VIT_NONE, origin, direction, distance);
 }
 
 bool photon_rays_covered(const photon_rays *r, uint32_t triangle, vec3 p, vec3 n) {
-    float t = 0.0f;
-    const uint32_t other = nearest_but(r, triangle, p, vec3_scale(n, -1.0f), &t);
-    const float own = r->s->ray_offset;
-    return other != VIT_NONE && (other < triangle ? t < own * (1.0f + ONE_PLACE) : t < own * (1.0f - ONE_PLACE));
+    float t;
+    return nearest(r, triangle, p, vec3_scale(n, -1.0f), &t) != VIT_NONE;
 }
 
 /* For any hit: does this one count? Called only in scenes with cut-outs. */

@@ -140,6 +140,14 @@ typedef struct opening {
     float far; /* metres */
 } opening;
 
+/* Does a photon that comes down on the point's place land there: not on a face that lies in the same place or closely in front,
+ * and not in a hole? Then it is surface for one face alone, however many a file holds there. */
+static bool catches(const zones *z, const area_point *p, vec3 from) {
+    const uint32_t triangle = z->c->side_of[p->cell] / 2;
+    return !photon_rays_covered(&z->rays, triangle, from, p->n) &&
+           photon_opaque_at(&z->scene, from, vec3_scale(p->n, -1.0f), triangle);
+}
+
 /* A point is open if one of a few rays from it goes far, to a side that light reaches, or leaves the scene, or meets a mirror
  * or glass. */
 static void look_out(void *user, uint32_t i) {
@@ -147,9 +155,10 @@ static void look_out(void *user, uint32_t i) {
     zones *z = o->z;
     area_point *p = z->points + i;
     const vec3 from = vec3_along(p->p, p->n, z->in->scene->ray_offset);
+    const uint32_t tries = catches(z, p, from) ? ZONES_TRIES : 0;
     vec3 ax, ay;
     vec3_across(p->n, &ax, &ay);
-    for (uint32_t k = 0; k < ZONES_TRIES; k++) {
+    for (uint32_t k = 0; k < tries; k++) {
         float u, v, s, c, t;
         spread(i, k, &u, &v);
         sincos_turn(v, &s, &c);

@@ -200,6 +200,72 @@ static void at_the_edge_of_a_plate_half_of_the_kernel_is_left_and_at_its_corner_
     drop(&f);
 }
 
+/* A plate in the air, and what else lies in its place: x, z of the corner, of u and of v, height, material. */
+typedef struct sheet {
+    float corner[2], u[2], v[2], y;
+    uint32_t material;
+} sheet;
+
+static const sheet plate = {{-0.5f, 0.5f}, {1, 0}, {0, -1}, 0, WALL_FLOOR};
+
+static void add_sheet(room *r, const sheet *s) {
+    room_quad(r, (const float[]){s->corner[0], s->y, s->corner[1]}, (const float[]){s->u[0], 0, s->u[1]},
+              (const float[]){s->v[0], 0, s->v[1]}, s->material);
+}
+
+/* However often a place's surface is in the file, photons land on it once. */
+static void faces_in_one_place_are_one_surface(void **state) {
+    (void)state;
+    static const struct {
+        const char *what;
+        sheet more[2];
+    } rows[] = {
+        {"twice, in two materials", {{{-0.5f, 0.5f}, {1, 0}, {0, -1}, 0, WALL_BACK}}},
+        {"with its back up", {{{-0.5f, 0.5f}, {0, -1}, {1, 0}, 0, WALL_FLOOR}}},
+        {"cut along the other diagonal", {{{0.5f, 0.5f}, {0, -1}, {-1, 0}, 0, WALL_FLOOR}}},
+        {"by a larger one", {{{-0.5f, 0.5f}, {1.03f, 0}, {0, -1.02f}, 0, WALL_FLOOR}}},
+        {"three times", {{{-0.5f, 0.5f}, {0, -1}, {1, 0}, 0, WALL_FLOOR}, {{-0.5f, 0.5f}, {1, 0}, {0, -1}, 0, WALL_FLOOR}}},
+        {"nearer than rays keep", {{{-0.5f, 0.5f}, {1, 0}, {0, -1}, 5e-6f, WALL_FLOOR}}},
+        {"slanting pieces over it",
+         {{{-0.41f, 0}, {0.41f, 0.43f}, {0.43f, -0.41f}, 0, WALL_BACK},
+          {{-0.2f, 0.2f}, {0.3f, 0.1f}, {0.1f, -0.3f}, 0, WALL_FLOOR}}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        fixture f;
+        room *r = lit_room();
+        if (i % 2 == 0) /* the plate is before or behind the others in the file */
+            add_sheet(r, &plate);
+        for (int k = 0; k < 2 && rows[i].more[k].u[0] + rows[i].more[k].v[0] != 0.0f; k++)
+            add_sheet(r, rows[i].more + k);
+        if (i % 2)
+            add_sheet(r, &plate);
+        begin(&f, r, 1);
+        add_views(&f, 0.05f, 0.4f, -0.03f);
+        f.in.zones = i != 0;
+        bake(&f);
+        expect_area(&f, rows[i].what, (vec3){0, rows[i].more[0].y, 0}, right, up, 1.0);
+        expect_area(&f, "its edge", (vec3){0, rows[i].more[0].y, 0.5f}, right, up, 0.5);
+        drop(&f);
+    }
+}
+
+/* A sheet on the floor, and one whose half is cut out. */
+static void what_lies_on_the_floor_hides_it_but_not_where_it_is_cut_out(void **state) {
+    (void)state;
+    fixture f;
+    room *r = lit_room();
+    const sheet carpet = {{-0.5f, 0.5f}, {1, 0}, {0, -1}, -1, WALLS};
+    add_sheet(r, &carpet);
+    room_texture(r, WALLS, 0, 200, 0, 200, 255);
+    r->model_materials[WALLS].cutoff = 0.5f;
+    begin(&f, r, 1);
+    add_views(&f, 0.05f, 0.02f, -0.03f);
+    bake(&f);
+    expect_area(&f, "a carpet with a hole", (vec3){0, -1, 0}, right, up, 1.0);
+    expect_area(&f, "its edge", (vec3){0, -1, 0.5f}, right, up, 1.0);
+    drop(&f);
+}
+
 static void add_box(room *r) { /* stands on the floor, open below; 1 m wide and deep, 0.6 m high */
     room_quad(r, (const float[]){-0.5f, -0.4f, 0.5f}, (const float[]){1, 0, 0}, (const float[]){0, 0, -1}, WALL_FLOOR);
     room_quad(r, (const float[]){-0.5f, -1, 0.5f}, (const float[]){1, 0, 0}, (const float[]){0, 0.6f, 0}, WALL_FLOOR);
@@ -407,6 +473,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plane_has_the_whole_kernel_and_an_inner_edge_that_of_both_planes),
         cmocka_unit_test(at_the_edge_of_a_plate_half_of_the_kernel_is_left_and_at_its_corner_a_quarter),
+        cmocka_unit_test(faces_in_one_place_are_one_surface),
+        cmocka_unit_test(what_lies_on_the_floor_hides_it_but_not_where_it_is_cut_out),
         cmocka_unit_test(a_box_hides_the_floor_under_it_and_its_sides_from_each_other),
         cmocka_unit_test(rooms_beside_a_thin_wall_do_not_accept_each_others_light),
         cmocka_unit_test(tiny_triangles_are_lit_like_their_neighbours),
