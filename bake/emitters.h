@@ -12,13 +12,16 @@ typedef struct emitters {
     uint32_t count; /* sides */
     uint32_t *side; /* 2 * triangle, + 1 for the back, ascending */
     double *sum;    /* weights of sides 0 .. i; points are spread evenly along it */
+    uint8_t *step;  /* weight of a side a unit of power: 2^-step */
     double flux[3]; /* of all sides together, W a channel */
     double area;    /* m2 */
 } emitters;
 
-/* The triangles whose materials have `lights` and emission. *s is copied, what it points to is used in place. Without any *out
- * is empty. The result does not depend on `threads` (0: all cores). VIT_FAILED: out of memory, or Embree fails. */
-vit_status emitters_find(const photon_scene *s, unsigned threads, emitters *out, vit_text *why);
+/* The triangles whose materials have `lights` and emission, but for sides that light only each other where none of the cameras
+ * looks, as insides of closed bodies. *s is copied, what it points to is used in place. Without any *out is empty. The result
+ * does not depend on `threads` (0: all cores). VIT_FAILED: out of memory, or Embree fails. */
+vit_status emitters_find(const photon_scene *s, const vit_camera *cameras, uint32_t frames, unsigned threads, emitters *out,
+                         vit_text *why);
 void emitters_free(emitters *e);
 
 typedef struct emitter_place {
@@ -31,7 +34,7 @@ typedef struct emitter_place {
 /* The point for 0 < x, y < 1: even over the unit square gives the density. Not for an empty set. */
 emitter_place emitters_place(const emitters *e, double x, double y);
 
-/* VIT_PATTERNS sets of `samples` points, section EMIT's first part. */
-void emitters_sets(const emitters *e, uint32_t samples, vit_emitter *out);
+/* VIT_PATTERNS sets of `samples` points, section EMIT's first part. VIT_FAILED: out of memory. */
+vit_status emitters_sets(const emitters *e, uint32_t samples, vit_emitter *out, vit_text *why);
 
 #endif

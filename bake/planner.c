@@ -226,7 +226,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
                               .ray_offset = g->ray_offset,
                               .box_pad = b->box_pad};
     sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius);
-    vit_status status = emitters_find(&lit, threads, &out->area, why);
+    vit_status status = emitters_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
     if (status == VIT_OK)
         status = share_paths(s, t, round, r, out, why);
     if (status != VIT_OK) {

@@ -24,9 +24,10 @@ static emitters find(const room *r, unsigned threads) {
                             .atlas = &r->a,
                             .ray_offset = r->g.ray_offset,
                             .box_pad = r->b.box_pad};
+    const vit_camera eye = {.eye = {0.9f, -0.9f, 0.9f}};
     emitters e;
     vit_text why = {""};
-    if (emitters_find(&s, threads, &e, &why) != VIT_OK)
+    if (emitters_find(&s, &eye, 1, threads, &e, &why) != VIT_OK)
         fail_msg("%s", why.text);
     return e;
 }
@@ -39,7 +40,8 @@ static void square(room *r, float y, uint32_t material) {
 static vit_emitter *sets(const emitters *e, uint32_t samples) {
     vit_emitter *s = calloc(VIT_PATTERNS * samples, sizeof *s);
     assert_non_null(s);
-    emitters_sets(e, samples, s);
+    vit_text why = {""};
+    assert_int_equal(emitters_sets(e, samples, s, &why), VIT_OK);
     return s;
 }
 
@@ -208,6 +210,144 @@ static void a_side_that_lights_a_gap_has_few_points(void **state) {
     room_drop(r);
 }
 
+/* A closed body of quads round a middle: edges, and whether it is a ball instead. */
+typedef struct body {
+    const char *what;
+    float edge[3]; /* m; a ball: its diameter first */
+    bool ball;
+} body;
+
+static void add_body(room *r, const body *b, const float middle[3]) {
+    if (b->ball) {
+        room_ball(r, middle, 0.5f * b->edge[0], LAMP);
+        return;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            float corner[3], u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+            for (int k = 0; k < 3; k++)
+                corner[k] = middle[k] - 0.5f * b->edge[k];
+            corner[axis] += side ? b->edge[axis] : 0.0f;
+            const int first = (axis + (side ? 1 : 2)) % 3, second = (axis + (side ? 2 : 1)) % 3; /* its front outside */
+            u[first] = b->edge[first];
+            v[second] = b->edge[second];
+            room_quad(r, corner, u, v, LAMP);
+        }
+}
+
+/* Irradiance at p on a surface facing n of points that shine, in units of radiance. */
+static double irradiance(const vit_emitter *points, uint32_t count, const double p[3], const double n[3]) {
+    double sum = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const vit_emitter *e = points + i;
+        double to[3], d2 = 0, here = 0, there = 0;
+        for (int k = 0; k < 3; k++) {
+            to[k] = (double)e->position[k] - p[k];
+            d2 += to[k] * to[k];
+            here += to[k] * n[k];
+            there -= to[k] * (double)e->normal[k];
+        }
+        sum += (double)e->power[0] * fmax(here, 0) * fmax(there, 0) / (d2 * fmax(d2, (double)e->radius2));
+    }
+    return sum / 3.0;
+}
+
+/* The same of the outsides of all triangles, each cut into many. */
+static double irradiance_of_outside(const emitters *e, const double p[3], const double n[3], const float middle[3]) {
+    enum { CUTS = 24 };
+    double sum = 0;
+    for (uint32_t i = 0; i < e->count; i++) {
+        const vit_triangle *t = e->scene.triangles + e->side[i] / 2;
+        const double sign = e->side[i] & 1 ? -0.5 : 0.5;
+        for (int a = 0; a < CUTS; a++)
+            for (int b = 0; b < 2 * (CUTS - a) - 1; b++) {
+                const double w1 = (a + (b % 2 ? 2.0 : 1.0) / 3) / CUTS, w2 = (b / 2 + (b % 2 ? 2.0 : 1.0) / 3) / CUTS;
+                const double area[3] = {(double)t->nx * sign, (double)t->ny * sign, (double)t->nz * sign};
+                double to[3], d2 = 0, here = 0, there = 0, out = 0;
+                for (int k = 0; k < 3; k++) {
+                    const double q = (double)t->v0[k] + w1 * (double)(t->v1[k] - t->v0[k]) + w2 * (double)(t->v2[k] - t->v0[k]);
+                    to[k] = q - p[k];
+                    d2 += to[k] * to[k];
+                    here += to[k] * n[k];
+                    there -= to[k] * area[k];
+                    out += (q - (double)middle[k]) * area[k];
+                }
+                if (out > 0)
+                    sum += fmax(here, 0) * fmax(there, 0) / (d2 * d2) / (CUTS * CUTS);
+            }
+    }
+    return sum;
+}
+
+/* Insides have points, too; a set that has none of them must not shine more outside. The mean over sets is what a block of 4 x
+ * 4 pixels shows. */
+static void closed_bodies_shine_as_much_as_their_outsides(void **state) {
+    (void)state;
+    enum { PLACES = 5 };
+    static const body bodies[] = {{"ball", {0.3f, 0, 0}, true},          {"small ball", {0.05f, 0, 0}, true},
+                                  {"cube", {0.3f, 0.3f, 0.3f}, false},   {"large cube", {0.9f, 0.9f, 0.9f}, false},
+                                  {"panel", {0.6f, 0.02f, 0.6f}, false}, {"tube", {0.03f, 0.03f, 1.0f}, false}};
+    static const float middle[3] = {0.05f, 0.1f, -0.02f};
+    static const double at[PLACES][2][3] = {{{0, -0.99, 0}, {0, 1, 0}},
+                                            {{0.6, -0.99, 0.5}, {0, 1, 0}},
+                                            {{-0.99, 0, 0.3}, {1, 0, 0}},
+                                            {{0.2, 0.1, 0.99}, {0, 0, -1}},
+                                            {{0.3, 0.99, 0.4}, {0, -1, 0}}};
+    for (size_t b = 0; b < sizeof bodies / sizeof *bodies; b++) {
+        room *r = room_closed(0.5f);
+        add_body(r, bodies + b, middle);
+        light_up(r, RADIANCE, 0);
+        emitters e = find(r, 2);
+        for (uint32_t samples = 16; samples <= 64; samples *= 4) {
+            vit_emitter *s = sets(&e, samples);
+            double should[PLACES], found[PLACES] = {0}, all = 0, all_found = 0;
+            for (size_t i = 0; i < PLACES; i++) {
+                double squares = 0;
+                should[i] = irradiance_of_outside(&e, at[i][0], at[i][1], middle);
+                for (uint32_t k = 0; k < VIT_PATTERNS; k++) {
+                    vit_emitter *set = s + k * samples;
+                    for (uint32_t j = 0; j < samples; j++) { /* insides, if there are points, are not seen from here */
+                        double out = 0;
+                        for (int c = 0; c < 3; c++)
+                            out += (double)((set[j].position[c] - middle[c]) * set[j].normal[c]);
+                        if (out < 0)
+                            memset(set[j].power, 0, sizeof set[j].power);
+                    }
+                    const double is = irradiance(set, samples, at[i][0], at[i][1]);
+                    found[i] += is / VIT_PATTERNS;
+                    squares += pow(is / should[i] - 1, 2) / VIT_PATTERNS;
+                }
+                all += should[i] / PLACES;
+                all_found += found[i] / PLACES;
+                print_message("  %-10s %u points: %.4f of right, sets vary by %.3f\n", bodies[b].what, samples,
+                              found[i] / should[i], sqrt(squares));
+            }
+            close_to(all_found, all, 0.015);
+            for (size_t i = 0; i < PLACES; i++)
+                assert_true(fabs(found[i] - should[i]) < 0.03 * all);
+            free(s);
+        }
+        emitters_free(&e);
+        room_drop(r);
+    }
+}
+
+/* What lights only itself lights nothing that is seen, unless the camera is in there. */
+static void insides_of_closed_bodies_have_no_points_but_walls_round_the_camera_do(void **state) {
+    (void)state;
+    static const body cube = {"cube", {0.3f, 0.3f, 0.3f}, false};
+    for (int k = 0; k < 3; k++) { /* closed; one wall open; a camera inside */
+        room *r = room_closed(0.5f);
+        add_body(r, &cube, k == 2 ? (const float[]){0.8f, -0.8f, 0.8f} : (const float[]){0, 0, 0});
+        r->m.triangles -= k == 1 ? 2 : 0;
+        light_up(r, RADIANCE, 0);
+        emitters e = find(r, 2);
+        close_to(e.area, (k == 0 ? 6 : k == 1 ? 10 : 12) * 0.09, 1e-5);
+        emitters_free(&e);
+        room_drop(r);
+    }
+}
+
 static void holes_of_a_lamp_are_black(void **state) {
     (void)state;
     room *r = room_closed(0.5f);
@@ -291,6 +431,8 @@ int main(void) {
         cmocka_unit_test(sets_are_even_over_a_square_and_so_are_neighbours_together),
         cmocka_unit_test(points_follow_power),
         cmocka_unit_test(a_side_that_lights_a_gap_has_few_points),
+        cmocka_unit_test(closed_bodies_shine_as_much_as_their_outsides),
+        cmocka_unit_test(insides_of_closed_bodies_have_no_points_but_walls_round_the_camera_do),
         cmocka_unit_test(holes_of_a_lamp_are_black),
         cmocka_unit_test(photons_of_a_lamp_carry_its_flux),
         cmocka_unit_test(one_thread_and_three_find_the_same),

@@ -108,8 +108,8 @@ static void make_emitters(bake *k) {
     const uint32_t samples = k->p.scene.area_samples;
     k->emitters = malloc(((size_t)samples + 1) * VIT_PATTERNS * sizeof *k->emitters);
     FUZZ_HOLDS(k->emitters);
-    if (samples > 0)
-        emitters_sets(&k->p.area, samples, k->emitters);
+    vit_text why;
+    FUZZ_HOLDS(samples == 0 || emitters_sets(&k->p.area, samples, k->emitters, &why) == VIT_OK);
 }
 
 /* bounds.c would measure these on a device. */
