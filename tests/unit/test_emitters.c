@@ -324,7 +324,7 @@ static void closed_bodies_shine_as_much_as_their_outsides(void **state) {
             }
             close_to(all_found, all, 0.015);
             for (size_t i = 0; i < PLACES; i++)
-                assert_true(fabs(found[i] - should[i]) < 0.03 * all);
+                assert_true(fabs(found[i] - should[i]) < 0.06 * all); /* 256 points in all */
             free(s);
         }
         emitters_free(&e);
