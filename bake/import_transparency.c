@@ -85,6 +85,12 @@ static bool take_stock(importer *im, const uint64_t *of_material, tally *t) {
     return fine;
 }
 
+/* A COLLADA material of <transparency> 0 is an exporter's opaque one (Autodesk's, Blender 2.4's), whatever others there are:
+ * who wants an invisible one leaves it out. */
+static bool means_opaque_by_0(const importer *im) {
+    return import_has_suffix(im->file, ".dae");
+}
+
 static bool settle(importer *im, const uint64_t *of_material) {
     tally t = {.all = 0};
     im->inverse = is_inverse(im, of_material);
@@ -95,14 +101,15 @@ static bool settle(importer *im, const uint64_t *of_material) {
                         "('cutoff' of a material in a scene file makes it a hole)");
     if (t.holes > 0 && t.holes + t.asked == t.all)
         im->shown = SHOWN_HOLES;
-    else if ((double)t.invisible >= NEARLY_ALL * (double)(t.all - t.asked) && t.invisible > 0)
+    else if (t.invisible > 0 && (means_opaque_by_0(im) || (double)t.invisible >= NEARLY_ALL * (double)(t.all - t.asked)))
         im->shown = SHOWN_INVISIBLE;
     if (im->shown != SHOWN_AS_SAID)
-        import_warn(
-            im,
-            "%llu of %llu triangles are of transparent materials ('%.100s'): shown opaque, or hardly anything would be left "
-            "('cutoff' of a material in a scene file makes it a hole)",
-            (unsigned long long)(im->shown == SHOWN_HOLES ? t.holes : t.invisible), (unsigned long long)t.all, t.name);
+        import_warn(im,
+                    "%llu of %llu triangles are of transparent materials ('%.100s'): shown opaque, %s "
+                    "('cutoff' of a material in a scene file makes it a hole)",
+                    (unsigned long long)(im->shown == SHOWN_HOLES ? t.holes : t.invisible), (unsigned long long)t.all, t.name,
+                    means_opaque_by_0(im) && im->shown == SHOWN_INVISIBLE ? "as exporters mean a <transparency> of 0"
+                                                                          : "or hardly anything would be left");
     return true;
 }
 

@@ -17,9 +17,10 @@ double light_units_of_emission(const scene *s) {
 }
 
 /* "5435.14", or "(1, 2, 3)" if the channels differ. */
-static const char *channels(const double value[3], double factor, char text[80]) {
+static const char *channels(const double value[3], double factor, int digits, char text[80]) {
     const bool grey = value[0] == value[1] && value[0] == value[2];
-    (void)snprintf(text, 80, grey ? "%.6g" : "(%.6g, %.6g, %.6g)", value[0] * factor, value[1] * factor, value[2] * factor);
+    (void)snprintf(text, 80, grey ? "%.*g" : "(%.*g, %.*g, %.*g)", digits, value[0] * factor, digits, value[1] * factor, digits,
+                   value[2] * factor);
     return text;
 }
 
@@ -27,8 +28,8 @@ static void say_light(const scene *s, const model_light *l, progress *p) {
     char file[80], ours[80];
     const bool directional = l->kind == VIT_LIGHT_DIRECTIONAL, guessed = !l->states_unit && s->light_units == LIGHT_UNITS_AUTO;
     const char *unit = directional ? "W/m2" : "W/sr", *stated = directional ? "lx" : "cd";
-    (void)channels(l->stated, 1.0, file);
-    (void)channels(l->power, directional ? 1.0 : 0.25 / PI, ours);
+    (void)channels(l->stated, 1.0, 6, file);
+    (void)channels(l->power, directional ? 1.0 : 0.25 / PI, 3, ours);
     if (guessed)
         progress_line(p, true, "warning: light '%.100s': its format states no unit: %s taken as %s%s", l->name, file, unit,
                       directional ? "" : ", inverse-square");
