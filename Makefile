@@ -163,9 +163,19 @@ run-cost: $(B)/vitrine-cost $(SCENES_MADE)
 	done
 	@echo "reports: build/cost/cornell/index.html build/cost/atrium/index.html"
 
+# How a user's program is compiled and linked.
+$(B)/vitrine.pc: Makefile
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(prefix)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' 'Name: vitrine' \
+	   'Description: plays baked 3D scenes with the same bits on every device' \
+	   'Version: $(shell sed -n 's/.*VIT_VERSION "\(.*\)"/\1/p' include/vitrine.h)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lvitrine $(LIBS_RUNTIME)' > $@
+
 # The library, its header and the tools under $(prefix).
 install: all
-	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib $(DESTDIR)$(prefix)/include
+	@rm -f $(B)/vitrine.pc
+	@$(MAKE) --no-print-directory $(B)/vitrine.pc
+	install -d $(DESTDIR)$(prefix)/bin $(DESTDIR)$(prefix)/lib/pkgconfig $(DESTDIR)$(prefix)/include
+	install -m 644 $(B)/vitrine.pc $(DESTDIR)$(prefix)/lib/pkgconfig
 	install -m 755 $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(DESTDIR)$(prefix)/bin
 	install -m 644 $(B)/libvitrine.a $(DESTDIR)$(prefix)/lib
 	install -m 644 include/vitrine.h $(DESTDIR)$(prefix)/include

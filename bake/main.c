@@ -39,10 +39,13 @@ static bool fits(const options *o) {
 }
 
 /* The device whose frames --fit times. OpenCL is looked at only if there is something to time. */
-static uint32_t played_on(const options *o) {
-    if (o->device_given)
-        return o->device;
-    return o->fit > 0 ? vit_device_default() : VIT_DEVICE_HOST;
+static vit_status find_device(const options *o, uint32_t *out, vit_text *why) {
+    *out = VIT_DEVICE_HOST;
+    if (o->device)
+        return vit_device_find(o->device, out, why);
+    if (o->fit > 0)
+        *out = vit_device_default();
+    return VIT_OK;
 }
 
 /* The pack must be none of the files that are known to be read by now. */
@@ -54,14 +57,9 @@ static vit_status check_against_inputs(const bake *b, vit_text *why) {
 
 /* What would make all the work be for nothing. */
 static vit_status check_before(const bake *b, vit_text *why) {
-    vit_text name;
     vit_status status = check_against_inputs(b, why);
     if (status == VIT_OK && b->options.output)
         status = pack_can_save(b->options.output, why);
-    if (status == VIT_OK && b->options.device_given && !vit_device_name(b->options.device, &name)) {
-        *why = name;
-        status = VIT_FAILED;
-    }
     return status;
 }
 
@@ -70,9 +68,12 @@ static vit_status make_pack(bake *b, vit_text *why) {
     p->strict = b->options.strict;
     p->all_formats = b->options.all_formats;
     p->threads = b->options.threads;
-    p->device = b->options.device_given && !fits(&b->options) ? b->options.device : VIT_DEVICE_HOST;
+    uint32_t played_on;
     p->progress = &b->progress;
-    vit_status status = pipeline_read(b->options.input, &p->scene, why);
+    vit_status status = find_device(&b->options, &played_on, why);
+    p->device = fits(&b->options) ? VIT_DEVICE_HOST : played_on;
+    if (status == VIT_OK)
+        status = pipeline_read(b->options.input, &p->scene, why);
     if (status == VIT_OK)
         status = options_apply(&b->options, &p->scene, why);
     if (status == VIT_OK)
@@ -86,7 +87,7 @@ static vit_status make_pack(bake *b, vit_text *why) {
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
     const pipeline_choice asked = pipeline_default(p);
     if (fits(&b->options))
-        status = fit_pack(p, played_on(&b->options), &budget, &b->packed, why);
+        status = fit_pack(p, played_on, &budget, &b->packed, why);
     else
         status = pipeline_pack(p, &asked, &b->packed, why);
     if (status != VIT_OK)

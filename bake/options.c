@@ -131,11 +131,9 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         o->threads = (unsigned)n;
         return good;
     }
-    if (strcmp(name, "--device") == 0 && (*wants = "a device's number (vitrine-play --list-devices), or host")) {
-        bool host = value && strcmp(value, "host") == 0, good = host || option_whole(value, 0, 1023, &n);
-        o->device = host ? VIT_DEVICE_HOST : (uint32_t)n;
-        o->device_given = good;
-        return good;
+    if (strcmp(name, "--device") == 0) {
+        *wants = "a number or a part of a name of vitrine-play --list-devices, gpu, cpu or host";
+        return (o->device = value) != NULL && value[0] != '\0' && value[0] != '-';
     }
     if (strcmp(name, "--size") == 0)
         return *wants = "WIDTHxHEIGHT, up to 7680x4320", option_size(value, &o->width, &o->height);
@@ -256,7 +254,7 @@ void options_help(void) {
          "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
          "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"
          "  --threads N           of the baker and the device host (default: all cores); changes no byte\n"
-         "  --device N|host       measures bounds and hashes: an OpenCL device, or the built-in one (default host, which has no\n"
+         "  --device NAME|N       measures bounds and hashes: an OpenCL device, as vitrine-play takes it, or host (the default, which has no\n"
          "                        kernels to compile); changes no byte. With --fit: plays what is timed (default 0, or host if\n"
          "                        there is no OpenCL)\n"
          "  --quiet               warnings and errors only\n"

@@ -8,8 +8,7 @@ typedef struct options {
     const char *input, *output;
     bool explain, strict, quiet, all_formats, no_check, help, version;
     unsigned threads;          /* 0: all cores */
-    uint32_t device;
-    bool device_given;         /* else the default */
+    const char *device;        /* as vit_device_find() takes it; NULL: the default */
     /* Overrides of the scene file; 0, NULL or negative: none. */
     int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits, antialias,
         light_samples, sky_samples, specular_depth;

@@ -12,7 +12,10 @@
  *     vit_close(v);
  *
  * The library never calls malloc, opens a file or prints; the OpenCL implementation below it may. One vit is used by one
- * thread at a time; several may be open at once. Conventions: metres, y up, right-handed; W, W/m2, W/(m2 sr). */
+ * thread at a time; several may be open at once. Conventions: metres, y up, right-handed; W, W/m2, W/(m2 sr).
+ *
+ * To link: cc program.c -lvitrine -lOpenCL -lpthread -lm   (built with OPENCL=0: without -lOpenCL)
+ *      or: cc program.c $(pkg-config --cflags --libs vitrine), as `make install` puts it. */
 #ifndef VITRINE_H
 #define VITRINE_H
 
@@ -40,7 +43,7 @@ typedef enum vit_status {
 #undef X
 } vit_status;
 
-/* One line, without a line feed, that names the thing and the cause of what was not VIT_OK. */
+/* One line, without a line feed, that names the thing and the cause of what was not VIT_OK. Whoever does not want it gives NULL for `why`. */
 typedef struct vit_text {
     char text[512];
 } vit_text;
@@ -146,7 +149,8 @@ typedef struct vit vit;
 /* The built-in device: the kernels compiled as C and run by threads, needs no OpenCL. Its buffers lie in the arena. */
 #define VIT_DEVICE_HOST 0xffffffffu
 
-/* "OpenCL platform / device / driver" of device `index`, or of VIT_DEVICE_HOST; NULL beyond the last of OpenCL. The text lives in `why`. */
+/* "OpenCL platform / device / driver" of device `index`, or of VIT_DEVICE_HOST; NULL beyond the last of OpenCL. The text lives in `why`; with
+ * NULL for that it is empty. */
 const char *vit_device_name(uint32_t index, vit_text *why);
 
 /* The device that `name` means: a number, as vit_device_name() counts; "host"; "gpu" or "cpu", as OpenCL has it; or a part of what

@@ -52,8 +52,11 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
         return VIT_USAGE;
     }
     if (!program) {
-        snprintf(why->text, sizeof why->text, "device host: no kernels for '%s' with %u lanes here; there are: ",
-                 info->host_isa ? info->host_isa : "this machine", l->lanes);
+        char lanes[32] = "";
+        if (l->lanes > 0)
+            snprintf(lanes, sizeof lanes, " with %u lanes", l->lanes);
+        snprintf(why->text, sizeof why->text, "device host: no kernels for '%.60s'%s here; there are: ", info->host_isa ? info->host_isa : "this machine",
+                 lanes);
         list_isas(why);
         return VIT_USAGE;
     }

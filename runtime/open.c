@@ -10,6 +10,8 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
         bad = "lanes must be 0, 1, 8 or 16";
     else if (info->group > 256 || (info->group & (info->group - 1)) != 0)
         bad = "group must be 0 or a power of two up to 256";
+    else if (info->threads > 256)
+        bad = "threads must be 0 to 256";
     else if ((unsigned)info->format > VIT_FORMAT_RGBA32F)
         bad = "no such format";
     else if ((unsigned)info->view > VIT_VIEW_albedo)
@@ -117,6 +119,8 @@ static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits 
 }
 
 vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why) {
+    vit_text unused;
+    why = why ? why : &unused;
     vit_pack pack;
     vit_limits l;
     const vit_device *device;
@@ -168,6 +172,8 @@ static vit_status warm_up(vit *v, vit_text *why) {
 }
 
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
+    vit_text unused;
+    why = why ? why : &unused;
     vit_pack pack;
     vit_limits l;
     vit_device_setup setup;

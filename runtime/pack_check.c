@@ -1,17 +1,17 @@
 /* pack_check.c: checks the sections of plain records: every index and every float that a kernel will use. */
 #include "pack_check.h"
 
-vit_status pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why) {
+vit_status vit_pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why) {
     for (vit_u32 i = 0; i < s->frames; i++) {
         const vit_camera *c = VIT_RECORD(vit_camera, cameras, i);
         if (!all_finite(c->eye, 3) || !all_finite(c->corner, 3) || !all_finite(c->right, 3) || !all_finite(c->down, 3))
-            return pack_refuse(why, "section CAMS: camera %u: a vector is not finite", i);
+            return vit_pack_refuse(why, "section CAMS: camera %u: a vector is not finite", i);
         if (!is_unit(c->forward))
-            return pack_refuse(why, "section CAMS: camera %u: forward is not a unit vector", i);
+            return vit_pack_refuse(why, "section CAMS: camera %u: forward is not a unit vector", i);
         if (!in_range(c->exposure, 0.0f, VIT_MAX_EXPOSURE))
-            return pack_refuse(why, "section CAMS: camera %u: exposure must be in 0..%g", i, (double)VIT_MAX_EXPOSURE);
+            return vit_pack_refuse(why, "section CAMS: camera %u: exposure must be in 0..%g", i, (double)VIT_MAX_EXPOSURE);
         if (!(c->pad0 == 0.0f && c->pad1 == 0.0f && c->pad2 == 0.0f && c->pad3 == 0.0f))
-            return pack_refuse(why, "section CAMS: camera %u: padding is not 0", i);
+            return vit_pack_refuse(why, "section CAMS: camera %u: padding is not 0", i);
     }
     return VIT_OK;
 }
@@ -77,41 +77,41 @@ static vit_status check_path_ranges(const vit_scene *s, const vit_light *lights,
             const vit_light *b = VIT_RECORD(vit_light, lights, j);
             if (a->path_first < b->path_first + b->path_count && b->path_first < a->path_first + a->path_count &&
                 a->path_count != 0 && b->path_count != 0)
-                return pack_refuse(why, "section LITE: lights %u and %u share photon paths", j, i);
+                return vit_pack_refuse(why, "section LITE: lights %u and %u share photon paths", j, i);
         }
     }
     if (sum != s->paths)
-        return pack_refuse(why, "section LITE: the lights have %llu photon paths, META says %u", (unsigned long long)sum,
+        return vit_pack_refuse(why, "section LITE: the lights have %llu photon paths, META says %u", (unsigned long long)sum,
                            s->paths);
     return VIT_OK;
 }
 
-vit_status pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why) {
+vit_status vit_pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why) {
     for (vit_u32 frame = 0; frame < s->frames; frame++)
         for (vit_u32 i = 0; i < s->lights; i++) {
             const vit_light *first = VIT_RECORD(vit_light, lights, i);
             const vit_light *l = VIT_RECORD(vit_light, lights, (size_t)frame * s->lights + i);
             const char *fault = light_fault(s, l);
             if (fault)
-                return pack_refuse(why, "section LITE: frame %u, light %u: %s", frame, i, fault);
+                return vit_pack_refuse(why, "section LITE: frame %u, light %u: %s", frame, i, fault);
             if (l->path_first != first->path_first || l->path_count != first->path_count)
-                return pack_refuse(why, "section LITE: frame %u, light %u: paths differ from frame 0", frame, i);
+                return vit_pack_refuse(why, "section LITE: frame %u, light %u: paths differ from frame 0", frame, i);
         }
     return check_path_ranges(s, lights, why);
 }
 
-vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why) {
+vit_status vit_pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why) {
     for (vit_u32 i = 0; i < s->triangles; i++) {
         const vit_attributes *a = VIT_RECORD(vit_attributes, attributes, i);
         const vit_u32 material = a->material & VIT_MATERIAL_INDEX;
         if (material >= s->materials)
-            return pack_refuse(why, "section ATTR: triangle %u: material %u of %u", i, material, s->materials);
+            return vit_pack_refuse(why, "section ATTR: triangle %u: material %u of %u", i, material, s->materials);
         if (a->material & ~(VIT_MATERIAL_INDEX | VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK | VIT_TRIANGLE_SMOOTH))
-            return pack_refuse(why, "section ATTR: triangle %u: unknown flags 0x%x", i, a->material);
+            return vit_pack_refuse(why, "section ATTR: triangle %u: unknown flags 0x%x", i, a->material);
         if (!all_finite(a->uv[0], 2) || !all_finite(a->uv[1], 2) || !all_finite(a->uv[2], 2))
-            return pack_refuse(why, "section ATTR: triangle %u: a texture coordinate is not finite", i);
+            return vit_pack_refuse(why, "section ATTR: triangle %u: a texture coordinate is not finite", i);
         if (!all_zero(a->pad, 2))
-            return pack_refuse(why, "section ATTR: triangle %u: padding is not 0", i);
+            return vit_pack_refuse(why, "section ATTR: triangle %u: padding is not 0", i);
     }
     return VIT_OK;
 }
@@ -132,91 +132,91 @@ static const char *shine_fault(const vit_material *m) {
     return all_zero(m->pad, 2) ? 0 : "padding is not 0";
 }
 
-vit_status pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
+vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
     for (vit_u32 i = 0; i < s->materials; i++) {
         const vit_material *m = VIT_RECORD(vit_material, materials, i);
         if (!all_in_range(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO))
-            return pack_refuse(why, "section MATL: material %u: albedo must be in 0..%g", i, (double)VIT_MAX_ALBEDO);
+            return vit_pack_refuse(why, "section MATL: material %u: albedo must be in 0..%g", i, (double)VIT_MAX_ALBEDO);
         if (!all_in_range(m->emission, 3, 0.0f, VIT_MAX_RADIANCE))
-            return pack_refuse(why, "section MATL: material %u: emission must be in 0..%g", i, (double)VIT_MAX_RADIANCE);
+            return vit_pack_refuse(why, "section MATL: material %u: emission must be in 0..%g", i, (double)VIT_MAX_RADIANCE);
         if (m->texture != VIT_NONE && m->texture >= s->textures)
-            return pack_refuse(why, "section MATL: material %u: texture %u of %u", i, m->texture, s->textures);
+            return vit_pack_refuse(why, "section MATL: material %u: texture %u of %u", i, m->texture, s->textures);
         if (m->cutout > 1)
-            return pack_refuse(why, "section MATL: material %u: cutout must be 0 or 1, got %u", i, m->cutout);
+            return vit_pack_refuse(why, "section MATL: material %u: cutout must be 0 or 1, got %u", i, m->cutout);
         if (m->cutout && m->texture == VIT_NONE)
-            return pack_refuse(why, "section MATL: material %u: cut out by no texture", i);
+            return vit_pack_refuse(why, "section MATL: material %u: cut out by no texture", i);
         const char *fault = shine_fault(m);
         if (fault)
-            return pack_refuse(why, "section MATL: material %u: %s", i, fault);
+            return vit_pack_refuse(why, "section MATL: material %u: %s", i, fault);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why) {
+vit_status vit_pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why) {
     for (vit_u32 i = 0; i < s->textures; i++) {
         const vit_texture *t = VIT_RECORD(vit_texture, textures, i);
         if (t->mip_count == 0)
-            return pack_refuse(why, "section TEXR: texture %u: no mip level", i);
+            return vit_pack_refuse(why, "section TEXR: texture %u: no mip level", i);
         if ((uint64_t)t->first_mip + t->mip_count > s->mips)
-            return pack_refuse(why, "section TEXR: texture %u: mip levels run beyond the %u of META", i, s->mips);
+            return vit_pack_refuse(why, "section TEXR: texture %u: mip levels run beyond the %u of META", i, s->mips);
         if (t->wrap_u > VIT_WRAP_MIRROR || t->wrap_v > VIT_WRAP_MIRROR)
-            return pack_refuse(why, "section TEXR: texture %u: unknown wrap mode", i);
+            return vit_pack_refuse(why, "section TEXR: texture %u: unknown wrap mode", i);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why) {
+vit_status vit_pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why) {
     for (vit_u32 i = 0; i < s->mips; i++) {
         const vit_mip *m = VIT_RECORD(vit_mip, mips, i);
         if (m->width < 1 || m->width > 16384 || m->height < 1 || m->height > 16384)
-            return pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width, m->height);
+            return vit_pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width, m->height);
         if (m->pitch < m->width + 2)
-            return pack_refuse(why, "section MIPS: mip %u: pitch %u leaves no gutter beside %u texels", i, m->pitch, m->width);
+            return vit_pack_refuse(why, "section MIPS: mip %u: pitch %u leaves no gutter beside %u texels", i, m->pitch, m->width);
         /* The gutter's corners are texels (-1, -1) and (width, height). Products of 32-bit numbers fit 64 bits. */
         const uint64_t before = (uint64_t)m->pitch + 1, last = m->offset + (uint64_t)m->height * m->pitch + m->width;
         if (m->offset < before || last >= s->texels)
-            return pack_refuse(why, "section MIPS: mip %u: runs beyond the atlas of %u texels", i, s->texels);
+            return vit_pack_refuse(why, "section MIPS: mip %u: runs beyond the atlas of %u texels", i, s->texels);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why) {
+vit_status vit_pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why) {
     for (uint64_t i = 0; s->cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
         const vit_u32 side = *VIT_RECORD(vit_u32, sides, i);
         const uint64_t parts = side >> VIT_SIDE_PARTS_SHIFT, first = side & VIT_SIDE_CELL;
         if (parts < 1 || first + parts * parts > s->cells)
-            return pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells", (unsigned long long)i,
+            return vit_pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells", (unsigned long long)i,
                                (unsigned long long)parts, (unsigned long long)first, s->cells);
     }
     for (vit_u32 i = 0; i < s->cells; i++) {
         const vit_cell *c = VIT_RECORD(vit_cell, cells, i);
         for (int k = 0; k < 3; k++)
             if ((c->word >> 9 * k & 511u) < VIT_CELL_AREA_LEAST)
-                return pack_refuse(why, "section CELL: cell %u: an area is too small", i);
+                return vit_pack_refuse(why, "section CELL: cell %u: an area is too small", i);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why) {
+vit_status vit_pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why) {
     const uint64_t area = VIT_PATTERNS * (uint64_t)s->area_samples, count = area + VIT_PATTERNS * (uint64_t)s->sky_samples;
     for (uint64_t i = 0; i < count; i++) {
         const vit_emitter *e = VIT_RECORD(vit_emitter, emitters, i);
         const float *unit = i < area ? e->normal : e->position;
         if (!all_finite(e->position, 3) || !is_unit(unit))
-            return pack_refuse(why, "section EMIT: point %llu: position is not finite, or normal or direction not a unit vector",
+            return vit_pack_refuse(why, "section EMIT: point %llu: position is not finite, or normal or direction not a unit vector",
                                (unsigned long long)i);
         if (i < area ? !in_range(e->radius2, FLT_MIN, FLT_MAX) : !all_in_range(&e->radius2, 1, 0.0f, 0.0f))
-            return pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky", (unsigned long long)i);
+            return vit_pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky", (unsigned long long)i);
         if (!all_in_range(e->power, 3, 0.0f, VIT_MAX_INTENSITY))
-            return pack_refuse(why, "section EMIT: point %llu: power must be in 0..1e15", (unsigned long long)i);
+            return vit_pack_refuse(why, "section EMIT: point %llu: power must be in 0..1e15", (unsigned long long)i);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why) {
+vit_status vit_pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why) {
     for (uint64_t i = 0; i < (s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0); i++)
         if (!all_in_range(VIT_RECORD(vit_sky_texel, texels, i)->radiance, 3, 0.0f, VIT_MAX_RADIANCE))
-            return pack_refuse(why, "section SKYT: texel %llu: radiance must be in 0..%g", (unsigned long long)i, (double)VIT_MAX_RADIANCE);
+            return vit_pack_refuse(why, "section SKYT: texel %llu: radiance must be in 0..%g", (unsigned long long)i, (double)VIT_MAX_RADIANCE);
     return VIT_OK;
 }
 
@@ -237,18 +237,18 @@ static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
     return product >= 1 - 1e-4 && product <= 1 + 1e-4 ? 0 : "inv_radius2 is not 1 / radius2";
 }
 
-vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
+vit_status vit_pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
     for (vit_u32 i = 0; i < s->baked; i++) {
         const char *fault = photon_fault(s, VIT_RECORD(vit_photon, photons, i));
         if (fault)
-            return pack_refuse(why, "section PHOT: photon %u: %s", i, fault);
+            return vit_pack_refuse(why, "section PHOT: photon %u: %s", i, fault);
     }
     return VIT_OK;
 }
 
-vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why) {
+vit_status vit_pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why) {
     for (vit_u32 i = 0; i < s->frames; i++)
         if (!all_zero(VIT_RECORD(vit_gold, golds, i)->pad, 4))
-            return pack_refuse(why, "section GOLD: frame %u: padding is not 0", i);
+            return vit_pack_refuse(why, "section GOLD: frame %u: padding is not 0", i);
     return VIT_OK;
 }

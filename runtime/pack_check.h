@@ -10,27 +10,27 @@
 #include <stdbool.h>
 
 /* Writes "pack: " and the formatted line, returns VIT_BAD_INPUT. */
-vit_status pack_refuse(vit_text *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
+vit_status vit_pack_refuse(vit_text *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* pack_meta.c: the scene itself; after VIT_OK its counts are within the limits that vit_pack_derive() states. */
-vit_status pack_check_meta(const vit_scene *s, vit_text *why);
+vit_status vit_pack_check_meta(const vit_scene *s, vit_text *why);
 
 /* pack_check.c: the sections of plain records. */
-vit_status pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why);
-vit_status pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why);
-vit_status pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why);
-vit_status pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why);
-vit_status pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why);
-vit_status pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why);
-vit_status pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why);
-vit_status pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why);
-vit_status pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why);
-vit_status pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why);
-vit_status pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why);
+vit_status vit_pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why);
+vit_status vit_pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why);
+vit_status vit_pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why);
+vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why);
+vit_status vit_pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why);
+vit_status vit_pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why);
+vit_status vit_pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why);
+vit_status vit_pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why);
+vit_status vit_pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why);
+vit_status vit_pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why);
+vit_status vit_pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why);
 
-/* pack_check_tree.c: triangles, then the tree over them. */
-vit_status pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why);
-vit_status pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why);
+/* vit_pack_check_tree.c: triangles, then the tree over them. */
+vit_status vit_pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why);
+vit_status vit_pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why);
 
 /* False for NaN, as every comparison with it is. */
 static inline bool in_range(float value, float least, float most) {

@@ -1,4 +1,4 @@
-/* pack_check_tree.c: checks the triangles and the BVH over them: after it, a traversal with a stack of VIT_BVH_STACK ends,
+/* vit_pack_check_tree.c: checks the triangles and the BVH over them: after it, a traversal with a stack of VIT_BVH_STACK ends,
  * stays inside both sections and finds every triangle. One depth-first walk, no memory but its own stack.
  *
  * Why the walk ends and visits every node once: an inner child's index is greater than its parent's, so there is no cycle.
@@ -8,18 +8,18 @@
 
 #include <string.h>
 
-vit_status pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why) {
+vit_status vit_pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why) {
     for (vit_u32 i = 0; i < s->triangles; i++) {
         const vit_triangle *t = VIT_RECORD(vit_triangle, triangles, i);
         const float n[3] = {t->nx, t->ny, t->nz};
         if (!all_finite(t->v0, 3) || !all_finite(t->v1, 3) || !all_finite(t->v2, 3))
-            return pack_refuse(why, "section GEOM: triangle %u: vertex is not finite", i);
+            return vit_pack_refuse(why, "section GEOM: triangle %u: vertex is not finite", i);
         if (!all_in_range(t->v0, 3, -1e9f, 1e9f) || !all_in_range(t->v1, 3, -1e9f, 1e9f) || !all_in_range(t->v2, 3, -1e9f, 1e9f))
-            return pack_refuse(why, "section GEOM: triangle %u: vertex beyond 1e9 m", i); /* products of edges stay finite */
+            return vit_pack_refuse(why, "section GEOM: triangle %u: vertex beyond 1e9 m", i); /* products of edges stay finite */
         if (!all_finite(n, 3))
-            return pack_refuse(why, "section GEOM: triangle %u: normal is not finite", i);
+            return vit_pack_refuse(why, "section GEOM: triangle %u: normal is not finite", i);
         if (all_in_range(n, 3, 0.0f, 0.0f))
-            return pack_refuse(why, "section GEOM: triangle %u: normal is 0", i);
+            return vit_pack_refuse(why, "section GEOM: triangle %u: normal is 0", i);
     }
     return VIT_OK;
 }
@@ -74,16 +74,16 @@ static bool box_holds_triangle(const visit *v, const vit_triangle *t, float pad)
 static vit_status enter_leaf(walk *w, const visit *v) {
     const vit_u32 first = v->child & VIT_LEAF_FIRST, count = (v->child >> VIT_LEAF_SHIFT & (VIT_LEAF_MAX - 1)) + 1;
     if ((uint64_t)first + count > w->s->triangles)
-        return pack_refuse(w->why, "section BVHN: node %u: leaf of triangles %u..%u of %u", v->parent, first, first + count - 1,
+        return vit_pack_refuse(w->why, "section BVHN: node %u: leaf of triangles %u..%u of %u", v->parent, first, first + count - 1,
                            w->s->triangles);
     if (box_is_empty(v->lo, v->hi)) /* a missing child */
         return VIT_OK;
     if (first != w->found)
-        return pack_refuse(w->why, "section BVHN: node %u: leaf begins at triangle %u, expected %u", v->parent, first,
+        return vit_pack_refuse(w->why, "section BVHN: node %u: leaf begins at triangle %u, expected %u", v->parent, first,
                            w->found);
     for (vit_u32 i = first; i < first + count; i++)
         if (!box_holds_triangle(v, VIT_RECORD(vit_triangle, w->triangles, i), w->s->box_pad))
-            return pack_refuse(w->why, "section BVHN: node %u: box does not hold triangle %u", v->parent, i);
+            return vit_pack_refuse(w->why, "section BVHN: node %u: box does not hold triangle %u", v->parent, i);
     w->found += count;
     return VIT_OK;
 }
@@ -97,12 +97,12 @@ static vit_status queue_child(walk *w, const visit *v, const vit_bvh_node *n, in
     const bool leaf = c.child & VIT_LEAF_BIT;
     if (!(which == 1 && leaf && box_is_empty(c.lo, c.hi))) {
         if (!all_finite(c.lo, 3) || !all_finite(c.hi, 3) || !box_is_inside(c.lo, c.lo, c.lo, c.hi))
-            return pack_refuse(w->why, "section BVHN: node %u: box of child %d is not finite or inside out", index, which);
+            return vit_pack_refuse(w->why, "section BVHN: node %u: box of child %d is not finite or inside out", index, which);
         if (!box_is_inside(c.lo, c.hi, v->lo, v->hi))
-            return pack_refuse(w->why, "section BVHN: node %u: box of child %d leaves its parent's", index, which);
+            return vit_pack_refuse(w->why, "section BVHN: node %u: box of child %d leaves its parent's", index, which);
     }
     if (!leaf && (c.child <= index || c.child >= w->s->nodes))
-        return pack_refuse(w->why, "section BVHN: node %u: child %d is node %u of %u", index, which, c.child, w->s->nodes);
+        return vit_pack_refuse(w->why, "section BVHN: node %u: child %d is node %u of %u", index, which, c.child, w->s->nodes);
     w->stack[w->waiting++] = c;
     return VIT_OK;
 }
@@ -110,15 +110,15 @@ static vit_status queue_child(walk *w, const visit *v, const vit_bvh_node *n, in
 static vit_status enter_node(walk *w, const visit *v) {
     const vit_bvh_node *n = VIT_RECORD(vit_bvh_node, w->nodes, v->child);
     if (v->depth + 1 >= VIT_BVH_STACK)
-        return pack_refuse(w->why, "section BVHN: node %u: deeper than %d", v->child, VIT_BVH_STACK - 1);
+        return vit_pack_refuse(w->why, "section BVHN: node %u: deeper than %d", v->child, VIT_BVH_STACK - 1);
     if (!all_zero(n->pad, 2))
-        return pack_refuse(w->why, "section BVHN: node %u: padding is not 0", v->child);
+        return vit_pack_refuse(w->why, "section BVHN: node %u: padding is not 0", v->child);
     w->visited++;
     vit_status status = queue_child(w, v, n, 1); /* last in, first out: child 0 is entered first */
     return status == VIT_OK ? queue_child(w, v, n, 0) : status;
 }
 
-vit_status pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why) {
+vit_status vit_pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why) {
     walk w = {.s = s, .nodes = nodes, .triangles = triangles, .why = why};
     w.stack[w.waiting++] = (visit){.child = 0, .lo = {-FLT_MAX, -FLT_MAX, -FLT_MAX}, .hi = {FLT_MAX, FLT_MAX, FLT_MAX}};
     while (w.waiting > 0) {
@@ -128,8 +128,8 @@ vit_status pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const 
             return status;
     }
     if (w.found != s->triangles)
-        return pack_refuse(why, "section BVHN: leaves hold %u triangles of %u", w.found, s->triangles);
+        return vit_pack_refuse(why, "section BVHN: leaves hold %u triangles of %u", w.found, s->triangles);
     if (w.visited != s->nodes)
-        return pack_refuse(why, "section BVHN: %u nodes of %u are in the tree", w.visited, s->nodes);
+        return vit_pack_refuse(why, "section BVHN: %u nodes of %u are in the tree", w.visited, s->nodes);
     return VIT_OK;
 }

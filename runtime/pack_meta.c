@@ -12,7 +12,7 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
     vit_scene derived = *s;
     vit_text cause = {""};
     if (vit_pack_derive(&derived, &cause) != VIT_OK)
-        return pack_refuse(why, "section META: %s", cause.text);
+        return vit_pack_refuse(why, "section META: %s", cause.text);
 #define FIELD(name)                                                                                                            \
     { #name, offsetof(vit_scene, name), sizeof s->name }
     static const struct {
@@ -24,7 +24,7 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 #undef FIELD
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++)
         if (memcmp((const char *)s + fields[i].offset, (const char *)&derived + fields[i].offset, fields[i].size) != 0)
-            return pack_refuse(why, "section META: %s does not follow from the counts", fields[i].name);
+            return vit_pack_refuse(why, "section META: %s does not follow from the counts", fields[i].name);
     return VIT_OK;
 }
 
@@ -56,12 +56,12 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     };
     for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
         if (!in_range(floats[i].value, floats[i].least, floats[i].most))
-            return pack_refuse(why, "section META: %s must be in %g..%g, got %g", floats[i].name, (double)floats[i].least,
+            return vit_pack_refuse(why, "section META: %s must be in %g..%g, got %g", floats[i].name, (double)floats[i].least,
                                (double)floats[i].most, (double)floats[i].value);
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
-            return pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return all_zero(s->pad, 5) ? VIT_OK : pack_refuse(why, "section META: padding is not 0");
+            return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
+    return all_zero(s->pad, 5) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -78,7 +78,7 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
     };
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
-            return pack_refuse(why, "section META: effect %s without %s", needs[i].name, needs[i].needed_name);
+            return vit_pack_refuse(why, "section META: effect %s without %s", needs[i].name, needs[i].needed_name);
     return VIT_OK;
 }
 
@@ -88,48 +88,48 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
 #undef X
     const vit_u64 e = s->effects;
     if (e & ~known)
-        return pack_refuse(why, "section META: unknown effects 0x%llx", (unsigned long long)(e & ~known));
+        return vit_pack_refuse(why, "section META: unknown effects 0x%llx", (unsigned long long)(e & ~known));
     vit_status status = check_needs(s, why);
     if (status != VIT_OK)
         return status;
     const bool photons = e & VIT_BIT(PHOTONS), list = e & VIT_BIT(LIST), buckets = e & VIT_BIT(BUCKETS);
     if (list && buckets)
-        return pack_refuse(why, "section META: effects LIST and BUCKETS exclude each other");
+        return vit_pack_refuse(why, "section META: effects LIST and BUCKETS exclude each other");
     if ((e & VIT_BIT(NEAREST)) && (e & VIT_BIT(TRILINEAR)))
-        return pack_refuse(why, "section META: effects NEAREST and TRILINEAR exclude each other");
+        return vit_pack_refuse(why, "section META: effects NEAREST and TRILINEAR exclude each other");
     if (photons && !list && !buckets)
-        return pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
+        return vit_pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
     if ((s->lights > 0) != ((e & VIT_BIT(LIGHTS)) != 0))
-        return pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
+        return vit_pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
     if ((s->paths > 0) != ((e & VIT_BIT(TRACED)) != 0))
-        return pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
+        return vit_pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
     if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
-        return pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
+        return vit_pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
-        return pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT", s->area_samples, s->sky_samples);
+        return vit_pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT", s->area_samples, s->sky_samples);
     if (s->sky_size == 0 && (e & VIT_BIT(SKY_IMAGE)))
-        return pack_refuse(why, "section META: the effect SKY_IMAGE without a sky");
+        return vit_pack_refuse(why, "section META: the effect SKY_IMAGE without a sky");
     if ((s->chain > 0) != ((e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0))
-        return pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
+        return vit_pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
     if ((s->copies > 1) != ((e & VIT_BIT(ANTIALIAS)) != 0))
-        return pack_refuse(why, "section META: %u copies contradict the effect ANTIALIAS", s->copies);
+        return vit_pack_refuse(why, "section META: %u copies contradict the effect ANTIALIAS", s->copies);
     if (s->baked > 0 && !photons)
-        return pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
+        return vit_pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
     return VIT_OK;
 }
 
 static vit_status check_bounds(const vit_scene *s, vit_text *why) {
     const vit_u32 root = s->effects & VIT_BIT(PHOTONS) ? 1 : 0; /* the hierarchy always has one */
     if (s->max_nodes < root || s->max_nodes > MAX_NODES)
-        return pack_refuse(why, "section META: max_nodes must be in %u..%u, got %u", root, MAX_NODES, s->max_nodes);
+        return vit_pack_refuse(why, "section META: max_nodes must be in %u..%u, got %u", root, MAX_NODES, s->max_nodes);
     if (s->max_list > MAX_LIST)
-        return pack_refuse(why, "section META: max_list must be in 0..%u, got %u", MAX_LIST, s->max_list);
+        return vit_pack_refuse(why, "section META: max_list must be in 0..%u, got %u", MAX_LIST, s->max_list);
     if (s->slice_first > MAX_SLICE)
-        return pack_refuse(why, "section META: slice_first must be in 0..%u, got %u", MAX_SLICE, s->slice_first);
+        return vit_pack_refuse(why, "section META: slice_first must be in 0..%u, got %u", MAX_SLICE, s->slice_first);
     return VIT_OK;
 }
 
-vit_status pack_check_meta(const vit_scene *s, vit_text *why) {
+vit_status vit_pack_check_meta(const vit_scene *s, vit_text *why) {
     vit_status status = check_derived(s, why);
     if (status == VIT_OK)
         status = check_floats(s, why);

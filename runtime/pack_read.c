@@ -29,7 +29,7 @@ static const uint32_t record_bytes[VIT_SECTION_COUNT] = {
 
 #define TABLE_END (sizeof(vit_pack_header) + VIT_SECTION_COUNT * sizeof(vit_pack_entry))
 
-vit_status pack_refuse(vit_text *why, const char *format, ...) {
+vit_status vit_pack_refuse(vit_text *why, const char *format, ...) {
     if (!why)
         return VIT_BAD_INPUT;
     int used = snprintf(why->text, sizeof why->text, "pack: ");
@@ -54,22 +54,22 @@ static bool bytes_are_zero(const unsigned char *bytes, size_t size) {
 
 static vit_status check_header(const vit_pack_header *file, size_t size, vit_text *why) {
     if (size < sizeof *file)
-        return pack_refuse(why, "header: the file has %zu bytes, a header has %zu", size, sizeof *file);
+        return vit_pack_refuse(why, "header: the file has %zu bytes, a header has %zu", size, sizeof *file);
     const vit_pack_header *h = VIT_BIG_ENDIAN ? vit_swap_header(&(vit_pack_header){0}, file) : file;
     if (memcmp(h->magic, VIT_PACK_MAGIC, sizeof h->magic) != 0)
-        return pack_refuse(why, "header: not a Vitrine pack");
+        return vit_pack_refuse(why, "header: not a Vitrine pack");
     if (h->version != VIT_PACK_VERSION)
-        return pack_refuse(why, "header: version %u, this program reads version %u", h->version, VIT_PACK_VERSION);
+        return vit_pack_refuse(why, "header: version %u, this program reads version %u", h->version, VIT_PACK_VERSION);
     if (h->sections != VIT_SECTION_COUNT)
-        return pack_refuse(why, "header: %u sections, expected %d", h->sections, VIT_SECTION_COUNT);
+        return vit_pack_refuse(why, "header: %u sections, expected %d", h->sections, VIT_SECTION_COUNT);
     if (h->size != size)
-        return pack_refuse(why, "header: the pack has %llu bytes, the file %zu", (unsigned long long)h->size, size);
+        return vit_pack_refuse(why, "header: the pack has %llu bytes, the file %zu", (unsigned long long)h->size, size);
     if (!bytes_are_zero(h->zero, sizeof h->zero))
-        return pack_refuse(why, "header: reserved bytes are not 0");
+        return vit_pack_refuse(why, "header: reserved bytes are not 0");
     if (size < TABLE_END)
-        return pack_refuse(why, "header: the file ends inside the section table");
+        return vit_pack_refuse(why, "header: the file ends inside the section table");
     if (vit_hash(file + 1, TABLE_END - sizeof *file) != h->table_hash)
-        return pack_refuse(why, "header: the hash of the section table does not match");
+        return vit_pack_refuse(why, "header: the hash of the section table does not match");
     return VIT_OK;
 }
 
@@ -77,20 +77,20 @@ static vit_status check_header(const vit_pack_header *file, size_t size, vit_tex
 static vit_status check_place(const unsigned char *bytes, size_t size, const vit_pack_entry *e, int i, uint64_t end,
                               vit_text *why) {
     if (memcmp(e->code, codes[i], sizeof e->code) != 0)
-        return pack_refuse(why, "section %s: not at its place in the section table", codes[i]);
+        return vit_pack_refuse(why, "section %s: not at its place in the section table", codes[i]);
     if (e->record != record_bytes[i])
-        return pack_refuse(why, "section %s: records of %u bytes, expected %u", codes[i], e->record, record_bytes[i]);
+        return vit_pack_refuse(why, "section %s: records of %u bytes, expected %u", codes[i], e->record, record_bytes[i]);
     if (e->offset % VIT_PACK_ALIGN != 0)
-        return pack_refuse(why, "section %s: offset %llu is not a multiple of %u", codes[i], (unsigned long long)e->offset,
+        return vit_pack_refuse(why, "section %s: offset %llu is not a multiple of %u", codes[i], (unsigned long long)e->offset,
                            VIT_PACK_ALIGN);
     if (e->offset > size || e->size > size - e->offset)
-        return pack_refuse(why, "section %s: runs beyond the end of the file", codes[i]);
+        return vit_pack_refuse(why, "section %s: runs beyond the end of the file", codes[i]);
     if (e->offset < end)
-        return pack_refuse(why, "section %s: overlaps what lies before it", codes[i]);
+        return vit_pack_refuse(why, "section %s: overlaps what lies before it", codes[i]);
     if (!bytes_are_zero(bytes + end, (size_t)(e->offset - end)))
-        return pack_refuse(why, "section %s: the gap before it is not 0", codes[i]);
+        return vit_pack_refuse(why, "section %s: the gap before it is not 0", codes[i]);
     if (vit_hash(bytes + e->offset, (size_t)e->size) != e->hash)
-        return pack_refuse(why, "section %s: the hash does not match", codes[i]);
+        return vit_pack_refuse(why, "section %s: the hash does not match", codes[i]);
     return VIT_OK;
 }
 
@@ -107,7 +107,7 @@ static vit_status check_places(const unsigned char *bytes, size_t size, vit_pack
         out->section[i] = e->size > 0 ? bytes + e->offset : 0;
     }
     if (end != size)
-        return pack_refuse(why, "header: %llu bytes follow the last section", (unsigned long long)(size - end));
+        return vit_pack_refuse(why, "header: %llu bytes follow the last section", (unsigned long long)(size - end));
     return VIT_OK;
 }
 
@@ -120,38 +120,38 @@ static vit_status check_sizes(const vit_scene *s, const vit_pack *p, vit_text *w
     };
     for (int i = 0; i < VIT_SECTION_COUNT; i++)
         if (p->bytes[i] != expected[i] * record_bytes[i])
-            return pack_refuse(why, "section %s: %zu bytes, but META counts %llu records of %u", codes[i], p->bytes[i],
+            return vit_pack_refuse(why, "section %s: %zu bytes, but META counts %llu records of %u", codes[i], p->bytes[i],
                                (unsigned long long)expected[i], record_bytes[i]);
     return VIT_OK;
 }
 
 static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text *why) {
     const void *const *at = p->section;
-    vit_status status = pack_check_cameras(s, at[VIT_SECTION_CAMS], why);
+    vit_status status = vit_pack_check_cameras(s, at[VIT_SECTION_CAMS], why);
     if (status == VIT_OK)
-        status = pack_check_lights(s, at[VIT_SECTION_LITE], why);
+        status = vit_pack_check_lights(s, at[VIT_SECTION_LITE], why);
     if (status == VIT_OK)
-        status = pack_check_triangles(s, at[VIT_SECTION_GEOM], why);
+        status = vit_pack_check_triangles(s, at[VIT_SECTION_GEOM], why);
     if (status == VIT_OK)
-        status = pack_check_attributes(s, at[VIT_SECTION_ATTR], why);
+        status = vit_pack_check_attributes(s, at[VIT_SECTION_ATTR], why);
     if (status == VIT_OK)
-        status = pack_check_tree(s, at[VIT_SECTION_BVHN], at[VIT_SECTION_GEOM], why);
+        status = vit_pack_check_tree(s, at[VIT_SECTION_BVHN], at[VIT_SECTION_GEOM], why);
     if (status == VIT_OK)
-        status = pack_check_materials(s, at[VIT_SECTION_MATL], why);
+        status = vit_pack_check_materials(s, at[VIT_SECTION_MATL], why);
     if (status == VIT_OK)
-        status = pack_check_textures(s, at[VIT_SECTION_TEXR], why);
+        status = vit_pack_check_textures(s, at[VIT_SECTION_TEXR], why);
     if (status == VIT_OK)
-        status = pack_check_mips(s, at[VIT_SECTION_MIPS], why);
+        status = vit_pack_check_mips(s, at[VIT_SECTION_MIPS], why);
     if (status == VIT_OK)
-        status = pack_check_cells(s, at[VIT_SECTION_SIDE], at[VIT_SECTION_CELL], why);
+        status = vit_pack_check_cells(s, at[VIT_SECTION_SIDE], at[VIT_SECTION_CELL], why);
     if (status == VIT_OK)
-        status = pack_check_emitters(s, at[VIT_SECTION_EMIT], why);
+        status = vit_pack_check_emitters(s, at[VIT_SECTION_EMIT], why);
     if (status == VIT_OK)
-        status = pack_check_sky(s, at[VIT_SECTION_SKYT], why);
+        status = vit_pack_check_sky(s, at[VIT_SECTION_SKYT], why);
     if (status == VIT_OK)
-        status = pack_check_photons(s, at[VIT_SECTION_PHOT], why);
+        status = vit_pack_check_photons(s, at[VIT_SECTION_PHOT], why);
     if (status == VIT_OK)
-        status = pack_check_golds(s, at[VIT_SECTION_GOLD], why);
+        status = vit_pack_check_golds(s, at[VIT_SECTION_GOLD], why);
     return status; /* every word of ATLS is a texel */
 }
 
@@ -167,7 +167,7 @@ static void keep_scene(vit_pack *out, const vit_scene *s) {
 vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text *why) {
     *out = (vit_pack){0};
     if (!bytes || (uintptr_t)bytes % 8 != 0)
-        return pack_refuse(why, "header: the pack must be in memory, 8-byte aligned");
+        return vit_pack_refuse(why, "header: the pack must be in memory, 8-byte aligned");
     vit_pack found = {0};
     vit_status status = check_header(bytes, size, why);
     if (status == VIT_OK)
@@ -175,11 +175,11 @@ vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text
     if (status != VIT_OK)
         return status;
     if (found.bytes[VIT_SECTION_META] != sizeof(vit_scene))
-        return pack_refuse(why, "section META: %zu bytes, expected %zu", found.bytes[VIT_SECTION_META], sizeof(vit_scene));
+        return vit_pack_refuse(why, "section META: %zu bytes, expected %zu", found.bytes[VIT_SECTION_META], sizeof(vit_scene));
     const vit_scene *s = VIT_RECORD(vit_scene, (const vit_scene *)found.section[VIT_SECTION_META], 0);
     if (VIT_BIG_ENDIAN)
         vit_swap_scene((vit_scene *)(uintptr_t)s); /* which is a copy then */
-    status = pack_check_meta(s, why);
+    status = vit_pack_check_meta(s, why);
     if (status == VIT_OK)
         status = check_sizes(s, &found, why);
     if (status == VIT_OK)

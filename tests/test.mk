@@ -36,6 +36,7 @@ $(B)/tests/golden/test_reference_runs.o: CFLAGS_ALL += $(if $(LIBS_COST),-DVIT_M
 $(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"' -DVIT_LIBS='"$(LIBS_RUNTIME)"'
+$(B)/tests/golden/test_public_header: $(B)/vitrine.pc
 # It casts rays with the tests' laboratory.
 $(B)/tests/bench/bench_octree: private LIBS_COST += -lcmocka
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a

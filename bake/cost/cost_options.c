@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef enum option_kind { FLAG, WORD, WHOLE, DEVICE, FRAME, REAL, SIZE, ERRORS } option_kind;
+typedef enum option_kind { FLAG, WORD, WHOLE, FRAME, REAL, SIZE, ERRORS } option_kind;
 
 typedef struct option {
     const char *name, *value; /* value: as --help writes it; NULL: a flag */
@@ -45,8 +45,8 @@ static const option options[] = {
     {"--memory", "MIB", WHOLE, AT(memory), 1, 1 << 24,
      "for packs, and for what is open at once (default: a quarter of the machine's)"},
     {"--threads", "N", WHOLE, AT(threads), 0, 1024, "of baker and reference (default 0: all cores); changes no bit"},
-    {"--device", "N|host", DEVICE, AT(device), 0, 1023,
-     "plays what is timed: an OpenCL device, or the built-in one (default 0, or host if there is no OpenCL)"},
+    {"--device", "NAME|N", WORD, AT(device), 0, 0,
+     "plays what is timed: an OpenCL device, as vitrine-play takes it, or host (default OpenCL's first, or host if there is none)"},
     {"--strict", NULL, FLAG, AT(strict), 0, 0, "a missing texture is an error, not a warning"},
     {"--quiet", NULL, FLAG, AT(quiet), 0, 0, "warnings and errors only"},
     {"--version", NULL, FLAG, AT(version), 0, 0, ""},
@@ -81,11 +81,6 @@ static bool set(const option *row, const char *value, cost_options *o) {
     case WHOLE:
         fine = read_number(value, true, row, &number);
         *(uint32_t *)to = fine ? (uint32_t)number : 0;
-        break;
-    case DEVICE:
-        o->device_given = true;
-        fine = strcmp(value, "host") == 0 || read_number(value, true, row, &number);
-        *(uint32_t *)to = strcmp(value, "host") == 0 ? VIT_DEVICE_HOST : (uint32_t)number;
         break;
     case FRAME:
         fine = read_number(value, true, row, &number);

@@ -8,8 +8,8 @@
 typedef struct cost_options {
     const char *input, *output, *knobs, *cache, *write;
     bool no_cache, strict, quiet, relmse, help, version;
-    uint32_t settings, every, repeats, max_samples, threads, device, memory, converge; /* memory: MiB, 0: a quarter of the machine's */
-    bool device_given; /* else the default */
+    uint32_t settings, every, repeats, max_samples, threads, memory, converge; /* memory: MiB, 0: a quarter of the machine's */
+    const char *device; /* as vit_device_find() takes it; NULL: the default */
     int64_t frame;                                                           /* < 0: the middle one */
     int width, height;                                                       /* 0: as the scene says */
     double shrink;                                                           /* of converge_plan */

@@ -27,10 +27,13 @@ static void catch_signals(void) {
 }
 
 /* The device whose frames are timed. OpenCL is looked at only if there is something to time. */
-static uint32_t played_on(const cost_options *o) {
-    if (o->device_given)
-        return o->device;
-    return o->output || o->fit > 0 ? vit_device_default() : VIT_DEVICE_HOST;
+static vit_status find_device(const cost_options *o, uint32_t *out, vit_text *why) {
+    *out = VIT_DEVICE_HOST;
+    if (o->device)
+        return vit_device_find(o->device, out, why);
+    if (o->output || o->fit > 0)
+        *out = vit_device_default();
+    return VIT_OK;
 }
 
 static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
@@ -80,8 +83,10 @@ static vit_status converge(const cost_options *o, const sweep_input *in, vit_tex
 
 static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_text *why) {
     char folder[4096];
+    uint32_t device;
+    vit_status status = find_device(o, &device, why);
     const sweep_input in = {.pipeline = p,
-                            .device = played_on(o),
+                            .device = device,
                             .knobs = o->knobs,
                             .settings = o->settings,
                             .frame = o->frame,
@@ -94,7 +99,12 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
                                                  : machine_cache_folder(folder, sizeof folder),
                             .memory = o->memory > 0 ? (uint64_t)o->memory << 20 : machine_memory(),
                             .cancel = &cancel};
-    vit_status status = load(o, p, why);
+    if (spread_any(status != VIT_OK)) {
+        if (status == VIT_OK)
+            snprintf(why->text, sizeof why->text, "another rank has no such device");
+        return status == VIT_OK ? VIT_FAILED : status;
+    }
+    status = load(o, p, why);
     if (status == VIT_OK && o->converge)
         return converge(o, &in, why);
     if (status == VIT_OK)

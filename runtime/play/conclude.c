@@ -45,7 +45,7 @@ static vit_status check_verdicts(player *p, vit_text *why) {
     const play_options *o = p->options;
     vit_text better = {""};
     vit_status status = verdict_end(&p->verdict, why);
-    if (status == VIT_OK && o->work_budget != NULL)
+    if (status == VIT_OK && o->work_budget != NULL && p->work.frames == p->end - p->first)
         status = work_budget_check(&p->limit, &p->work, &better, why);
     if (status == VIT_OK && o->has_budget)
         status = budget_check(&o->budget, o->percentile != 0 ? o->percentile : 95, &p->report, &p->need, why);
@@ -66,18 +66,23 @@ static void summarise(const player *p) {
                        : o->out_given || o->hash ? ""
                                                  : "; none kept (no --out)",
                        stderr);
-    if (options_counts(o))
+    if (options_counts(o) && p->work.frames > 0)
         (void)fprintf(stderr, "work of %" PRIu64 " %s counted%s\n", p->work.frames, p->work.frames == 1 ? "frame" : "frames",
                       o->work_budget != NULL ? ", within its budget" : "");
+}
+
+/* A loop has no other good end than SIGTERM, which is how a service is stopped. */
+static bool is_cut_short(const player *p) {
+    return p->options->loop == 1 || p->stopped_by != SIGTERM;
 }
 
 vit_status conclude(player *p, vit_text *why) {
     const play_options *o = p->options;
     vit_status status = tell(p, why);
-    if (status == VIT_OK && options_plays(o) && p->done < p->all)
+    if (status == VIT_OK && options_plays(o) && p->done < p->all && is_cut_short(p))
         /* A range has a frame. NOLINTNEXTLINE(clang-analyzer-core.DivideZero) */
         return play_fail(why, VIT_FAILED, "interrupted at frame %u", p->first + (uint32_t)(p->done % (p->end - p->first)));
-    if (status == VIT_OK && options_counts(o) && p->work.frames < p->end - p->first)
+    if (status == VIT_OK && options_counts(o) && p->work.frames < p->end - p->first && is_cut_short(p))
         return play_fail(why, VIT_FAILED, "interrupted at frame %u, counting", p->first + (uint32_t)p->work.frames);
     if (status == VIT_OK)
         status = check_verdicts(p, why);

@@ -13,12 +13,11 @@
 
 #define PAGE 4096 /* devices that share host memory want the framebuffer on a page */
 
-/* The one variable of the program: set by Ctrl-C and SIGTERM, read between frames. */
+/* The one variable of the program: the signal, Ctrl-C's or SIGTERM, read between frames. */
 static volatile sig_atomic_t stop_requested;
 
 static void request_stop(int number) {
-    (void)number;
-    stop_requested = 1;
+    stop_requested = number;
 }
 
 /* The first Ctrl-C ends after the frame at hand; a second one, should a device or a pipe hang, ends at once. */
@@ -61,7 +60,7 @@ static vit_status check_frames(player *p, vit_text *why) {
     if (p->first >= p->need.frames || p->end > p->need.frames)
         return play_fail(why, VIT_USAGE, "--frames: the pack has frames 0 to %u (--frames 0:%u is all)", p->need.frames - 1,
                          p->need.frames);
-    p->all = (uint64_t)(p->end - p->first) * o->loop;
+    p->all = o->loop == 0 ? UINT64_MAX : (uint64_t)(p->end - p->first) * o->loop;
     return VIT_OK;
 }
 
@@ -199,6 +198,7 @@ static vit_status play_and_count(player *p, vit_text *why) {
     vit_status status = options_plays(o) ? play(p, why) : VIT_OK;
     if (status == VIT_OK && options_counts(o) && !stop_requested)
         status = work_count(&p->info, p->first, p->end, has_progress(o), &stop_requested, &p->work, why);
+    p->stopped_by = stop_requested;
     if (status == VIT_OK)
         status = conclude(p, why);
     report_free(&p->report);

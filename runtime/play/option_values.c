@@ -43,7 +43,8 @@ bool option_number(const char *text, const char *end, uint32_t *out) {
 vit_status option_set_device(play_options *o, const char *value, vit_text *why) {
     o->device = value;
     if (value[0] == '\0' || value[0] == '-')
-        return play_fail(why, VIT_USAGE, "--device takes a number or a part of a name of --list-devices, gpu, cpu or host, got '%s'", value);
+        return play_fail(why, VIT_USAGE,
+                         "--device takes a number or a part of a name of --list-devices, gpu, cpu or host, got '%s'", value);
     return VIT_OK;
 }
 
@@ -67,7 +68,8 @@ vit_status option_set_out(play_options *o, const char *value, vit_text *why) {
     if (kind->target != NULL && (colon == NULL || colon[1] == '\0'))
         return play_fail(why, VIT_USAGE, "--out %s needs a target: %s:%s", kind->name, kind->name, kind->target);
     if (kind->target != NULL && !kind->stream && strcmp(colon + 1, "-") == 0)
-        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; raw and y4m write to stdout", kind->name);
+        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; raw and y4m write to stdout",
+                         kind->name);
     o->sink = kind;
     o->target = colon != NULL ? colon + 1 : "";
     o->out_given = true;
@@ -92,6 +94,15 @@ vit_status option_set_frames(play_options *o, const char *value, vit_text *why) 
         return play_fail(why, VIT_USAGE, "--frames %s: no frame is in it (A:B is A up to but not including B)", value);
     o->first = first;
     o->end = to_the_end ? 0 : last;
+    return VIT_OK;
+}
+
+vit_status option_set_loop(play_options *o, const char *value, vit_text *why) {
+    o->loop = 0;
+    if (strcmp(value, "inf") == 0)
+        return VIT_OK;
+    if (!option_number(value, value + strlen(value), &o->loop) || o->loop == 0)
+        return play_fail(why, VIT_USAGE, "--loop takes a number from 1 to %u, or inf, got '%s'", UINT32_MAX, value);
     return VIT_OK;
 }
 
@@ -157,7 +168,9 @@ vit_status option_set_percentile(play_options *o, const char *value, vit_text *w
 
 static vit_status set_file(const char **field, const char *name, const char *value, vit_text *why) {
     *field = value;
-    return value[0] != '\0' && strcmp(value, "-") != 0 ? VIT_OK : play_fail(why, VIT_USAGE, "--%s needs a file's name, got '%s'", name, value);
+    return value[0] != '\0' && strcmp(value, "-") != 0
+               ? VIT_OK
+               : play_fail(why, VIT_USAGE, "--%s needs a file's name, got '%s'", name, value);
 }
 
 vit_status option_set_work_budget(play_options *o, const char *value, vit_text *why) {

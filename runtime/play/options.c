@@ -17,8 +17,8 @@ typedef struct option {
 
 #define FLAG(name, field, meaning)                                                                                             \
     { name, NULL, meaning, offsetof(play_options, field), 0, 0, NULL }
-#define NUMBER(name, field, least, meaning)                                                                                    \
-    { name, "N", meaning, offsetof(play_options, field), least, UINT32_MAX, NULL }
+#define NUMBER(name, field, least, most, meaning)                                                                              \
+    { name, "N", meaning, offsetof(play_options, field), least, most, NULL }
 #define WORD(name, value, set, meaning)                                                                                        \
     { name, value, meaning, 0, 0, 0, set }
 
@@ -26,7 +26,7 @@ static const option table[] = {
     WORD("out", "KIND:TARGET", option_set_out, "where frames go; see Sinks (default: null)"),
     WORD("frames", "A:B", option_set_frames,
          "frames A up to but not including B; also A: and :B and a single N (default: all)"),
-    NUMBER("loop", loop, 1, "play the range N times (default: 1)"),
+    WORD("loop", "N|inf", option_set_loop, "play the range N times, or until SIGTERM, which ends a loop well (default: 1)"),
     FLAG("fps", pace, "play at the pack's rate and count late frames (default: as fast as possible)"),
     FLAG("verify", verify, "compare each frame's hash with the pack's golden hash"),
     FLAG("hash", hash, "print one line a frame: index and hash"),
@@ -44,17 +44,19 @@ static const option table[] = {
     WORD("format", "NAME", option_set_format, "pixels of null and raw; see Formats (default: xrgb8888)"),
     FLAG("list-devices", list_devices, "index and name of each device; host is built in and needs no OpenCL"),
     WORD("device", "NAME|N", option_set_device,
-         "play on this device: a part of its name (pocl, nvidia), gpu, cpu, host, or its number in --list-devices, which may change "
+         "play on this device: a part of its name (pocl, nvidia), gpu, cpu, host, or its number in --list-devices, which may "
+         "change "
          "(default: OpenCL's first; host if that cannot play)"),
-    NUMBER("threads", threads, 1, "of the device host (default: one a processor); changes no bit"),
+    NUMBER("threads", threads, 1, 256, "of the device host (default: one a processor); changes no bit"),
     WORD("host-isa", "NAME", option_set_host_isa,
          "instructions for the device host: baseline, avx2, avx512 (default: the best); changes no bit"),
     WORD("lanes", "N", option_set_lanes, "samples a work-item: 1, 8, 16, or 0 for what suits; changes no bit"),
     WORD("group", "N", option_set_group,
          "work-items a work-group: a power of two up to 256, or 0 for what suits; changes no bit"),
-    FLAG("wide-divide", wide_divide, "OpenCL: divide floats as doubles, as on devices that do not round them rightly by themselves; changes no bit"),
-    NUMBER("max-nodes", max_nodes, 1, "replace the pack's bound of hierarchy nodes (tests)"),
-    NUMBER("max-list", max_list, 1, "replace the pack's bound of list entries (tests)"),
+    FLAG("wide-divide", wide_divide,
+         "OpenCL: divide floats as doubles, as on devices that do not round them rightly by themselves; changes no bit"),
+    NUMBER("max-nodes", max_nodes, 1, UINT32_MAX, "replace the pack's bound of hierarchy nodes (tests)"),
+    NUMBER("max-list", max_list, 1, UINT32_MAX, "replace the pack's bound of list entries (tests)"),
     WORD("size", "WxH", option_set_size, "always refused: the size is fixed by the pack"),
     FLAG("quiet", quiet, "no progress, no summary; errors and what was asked for remain"),
     FLAG("version", version, "print the version"),
@@ -130,6 +132,9 @@ static vit_status check(const play_options *o, vit_text *why) {
     if (!o->sink->any_format && o->format != VIT_FORMAT_XRGB8888)
         return play_fail(why, VIT_USAGE, "--out %s takes --format xrgb8888 only, got %s", o->sink->name,
                          options_format_name(o->format));
+    if (o->device != NULL && strcmp(o->device, "host") != 0 && (o->threads != 0 || o->host_isa != NULL))
+        return play_fail(why, VIT_USAGE, "%s is for --device host, not for '%s'", o->threads != 0 ? "--threads" : "--host-isa",
+                         o->device);
     if (o->trace && (o->verify || o->hash || o->report || o->pace || o->sink != sink_at(0)))
         return play_fail(why, VIT_USAGE, "--trace plays alone: without --verify, --hash, --report, --fps and --out");
     if (o->trace && (o->report_file != NULL || o->has_budget || options_counts(o)))
@@ -209,7 +214,7 @@ void options_help(FILE *to) {
                 "\nExamples\n"
                 "  vitrine-play scene.vit --out png:frames --frames 0:24\n"
                 "  vitrine-play scene.vit --out y4m:- | ffmpeg -i - scene.mp4\n"
-                "  vitrine-play scene.vit --out y4m:- --fps --loop 10 | mpv -\n"
+                "  vitrine-play scene.vit --out y4m:- --fps --loop inf | mpv -\n"
                 "  vitrine-play scene.vit --verify && echo the same bits\n"
                 "  vitrine-play scene.vit --report --device pocl\n"
                 "  vitrine-play scene.vit --verify --device host --threads 2\n"

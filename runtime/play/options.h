@@ -13,7 +13,7 @@ typedef struct play_options {
     const char *target;    /* the sink's; "" if it takes none */
     bool out_given;
     uint32_t first, end; /* frames first .. end - 1; end == 0: to the path's end */
-    uint32_t loop;       /* times the range is played, >= 1 */
+    uint32_t loop;       /* times the range is played; 0: without an end */
     vit_view view;
     vit_format format;
     uint32_t threads, lanes, group, max_nodes, max_list; /* as in vit_open_info */

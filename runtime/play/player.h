@@ -15,7 +15,7 @@ typedef struct player {
     vit_open_info info;
     vit_requirements need;
     uint32_t first, end; /* frames of a round, checked against the pack */
-    uint64_t all;        /* frames of all rounds */
+    uint64_t all;        /* frames of all rounds; UINT64_MAX: without an end */
     void *arena, *pixels;
     vit *v;
     void *sink; /* the sink's state */
@@ -27,6 +27,7 @@ typedef struct player {
     vit_statistics last; /* of the last of them */
     work_budget limit;   /* --work-budget, read */
     work_counts work;
+    int stopped_by; /* signal that ended it; 0: none */
 } player;
 
 /* conclude.c: tables, files and verdicts at the end, also of a run that was interrupted (VIT_FAILED). VIT_MISMATCH and

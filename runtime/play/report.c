@@ -44,8 +44,11 @@ void report_progress(report *r, uint64_t done, uint64_t all) {
     if (!r->progress || (done != all && now - r->drawn_ms < PROGRESS_EVERY_MS))
         return;
     double rate = (double)r->frames * 1e3 / (now - r->began_ms + 1e-6);
-    (void)fprintf(stderr, "\rframe %" PRIu64 " of %" PRIu64 ", %.1f a second, %.0f s left\033[K", done, all, rate,
-                  (double)(all - done) / rate);
+    if (all == UINT64_MAX)
+        (void)fprintf(stderr, "\rframe %" PRIu64 ", %.1f a second\033[K", done, rate);
+    else
+        (void)fprintf(stderr, "\rframe %" PRIu64 " of %" PRIu64 ", %.1f a second, %.0f s left\033[K", done, all, rate,
+                      (double)(all - done) / rate);
     (void)fflush(stderr);
     r->drawn_ms = now;
 }
@@ -117,8 +120,8 @@ void report_print(const report *r, const vit_requirements *need, const vit_stati
 
 void report_summary(const report *r, const char *device, const char *end, FILE *to) {
     double seconds = (pacing_now_ms() - r->began_ms) * 1e-3;
-    (void)fprintf(to, "%" PRIu64 " %s in %.2f s, %.2f ms a frame (median) on %s%s\n", r->frames, r->frames == 1 ? "frame" : "frames",
-                  seconds, report_frame_times(r).p50, device, end);
+    (void)fprintf(to, "%" PRIu64 " %s in %.2f s, %.2f ms a frame (median) on %s%s\n", r->frames,
+                  r->frames == 1 ? "frame" : "frames", seconds, report_frame_times(r).p50, device, end);
 }
 
 void report_dropped(const vit_statistics *s, FILE *to) {
@@ -139,8 +142,8 @@ void report_faults(vit *v, FILE *to) {
     if (lost)
         (void)fprintf(to, "vitrine-play: faults before these are not kept\n");
     for (uint32_t i = 0; i < count; i++)
-        (void)fprintf(to, "vitrine-play: %s: frame %u%s%s: %s (%s, %" PRIu64 ")\n", f[i].level, f[i].frame, f[i].pass ? ", " : "",
-                      f[i].pass ? f[i].pass : "", f[i].meaning, f[i].code, f[i].count);
+        (void)fprintf(to, "vitrine-play: %s: frame %u%s%s: %s (%s, %" PRIu64 ")\n", f[i].level, f[i].frame,
+                      f[i].pass ? ", " : "", f[i].pass ? f[i].pass : "", f[i].meaning, f[i].code, f[i].count);
 }
 
 static void print_effects(uint64_t effects, FILE *to) {

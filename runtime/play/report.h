@@ -26,7 +26,7 @@ vit_status report_begin(report *r, uint64_t frames, uint32_t passes, bool progre
 vit_status report_frame(report *r, vit *v, double ms, vit_text *why);
 void report_free(report *r);
 
-/* Frame `done` of `all` is finished; drawn a few times a second. report_progress_clear() makes room for other text. */
+/* Frame `done` of `all` (UINT64_MAX: without an end) is finished; drawn a few times a second. report_progress_clear() makes room for other text. */
 void report_progress(report *r, uint64_t done, uint64_t all);
 void report_progress_clear(report *r);
 

@@ -73,17 +73,93 @@ static void a_users_program_needs_the_archive_and_opencl_alone(void **state) {
     tool_succeeds(&r);
 }
 
+/* The same call with nobody to tell why, of every function that takes a `why`. */
+static const char silent_program[] =
+    "#include \"vitrine.h\"\n"
+    "#include <stdio.h>\n"
+    "#include <stdlib.h>\n"
+    "#define IS(call, want) do { if ((call) != (want)) return fprintf(stderr, \"line %d\\n\", __LINE__), 1; } while (0)\n"
+    "static void passed(void *user, const char *pass, uint64_t hash) { (void)user; (void)pass; (void)hash; }\n"
+    "int main(int argc, char **argv) {\n"
+    "    vit_requirements need; vit *v; vit_statistics s; vit_fault faults[VIT_MAX_FAULTS]; uint32_t n, device; int lost;\n"
+    "    static char bad[64];\n"
+    "    FILE *f = argc > 1 ? fopen(argv[1], \"rb\") : NULL;\n"
+    "    if (!f) return 9;\n"
+    "    fseek(f, 0, SEEK_END); size_t size = (size_t)ftell(f); rewind(f);\n"
+    "    void *pack = malloc(size);\n"
+    "    if (!pack || fread(pack, 1, size, f) != size) return 9;\n"
+    "    fclose(f);\n"
+    "    IS(vit_device_name(VIT_DEVICE_HOST, NULL) != NULL, 1); IS(vit_device_name(12345, NULL) == NULL, 1);\n"
+    "    IS(vit_device_find(\"Host\", &device, NULL), VIT_OK); IS(device, VIT_DEVICE_HOST);\n"
+    "    IS(vit_device_find(\"no such thing\", &device, NULL), VIT_FAILED);\n"
+    "    vit_open_info info = {.pack = bad, .pack_size = sizeof bad, .device = VIT_DEVICE_HOST};\n"
+    "    IS(vit_require(&info, &need, NULL), VIT_BAD_INPUT); IS(vit_open(&info, &v, NULL), VIT_BAD_INPUT);\n"
+    "    info.pack = pack; info.pack_size = size; info.threads = 300;\n"
+    "    IS(vit_require(&info, &need, NULL), VIT_USAGE);\n"
+    "    info.threads = 0;\n"
+    "    IS(vit_require(&info, &need, NULL), VIT_OK); IS(vit_open(&info, &v, NULL), VIT_USAGE);\n"
+    "    info.arena = aligned_alloc(64, (need.host_bytes + 63) / 64 * 64); info.arena_size = need.host_bytes;\n"
+    "    IS(vit_open(&info, &v, NULL), VIT_OK);\n"
+    "    IS(vit_frame(v, 0, NULL, 0, NULL), VIT_OK); IS(vit_frame(v, 1000000, NULL, 0, NULL), VIT_USAGE);\n"
+    "    IS(vit_stats(v, &s, NULL), VIT_OK); IS(vit_faults(v, faults, &n, &lost, NULL), VIT_OK);\n"
+    "    IS(vit_reached(v, &n, 1, NULL), VIT_USAGE);\n"
+    "    IS(vit_trace(v, 0, bad, 1, passed, NULL, NULL), VIT_USAGE);\n"
+    "    vit_close(v); free(info.arena); free(pack);\n"
+    "    return 0;\n"
+    "}\n";
+
+static void every_call_works_with_nobody_to_tell_why(void **state) {
+    (void)state;
+    test_packs_begin();
+    test_packs_write(TEST_PACKS "/silent.c", silent_program, sizeof silent_program - 1);
+    tool(&r, VIT_COMPILE " -std=c11 -Wall -Wextra -Wpedantic -Werror -Iinclude " TEST_PACKS "/silent.c " VIT_BUILD_DIR
+                         "/libvitrine.a " VIT_LIBS " -o " TEST_PACKS "/silent");
+    tool_succeeds(&r);
+    tool(&r, TEST_PACKS "/silent %s", test_pack("list"));
+    tool_succeeds(&r);
+}
+
+/* The value of a line of the .pc file, with ${libdir} and ${includedir} replaced by where these files lie here. */
+static void value_of(const char *text, const char *name, char *out, size_t size) {
+    const char *at = strstr(text, name);
+    assert_non_null(at);
+    size_t n = 0;
+    for (at += strlen(name); *at && *at != '\n' && n + 64 < size;)
+        if (strncmp(at, "${libdir}", 9) == 0) {
+            n += (size_t)snprintf(out + n, size - n, VIT_BUILD_DIR);
+            at += 9;
+        } else if (strncmp(at, "${includedir}", 13) == 0) {
+            n += (size_t)snprintf(out + n, size - n, "include");
+            at += 13;
+        } else
+            out[n++] = *at++;
+    out[n] = '\0';
+}
+
+static void the_file_for_pkg_config_says_how_to_link(void **state) {
+    (void)state;
+    char text[2048], flags[512], libs[512];
+    FILE *f = fopen(VIT_BUILD_DIR "/vitrine.pc", "r");
+    assert_non_null(f);
+    text[fread(text, 1, sizeof text - 1, f)] = '\0';
+    (void)fclose(f);
+    value_of(text, "\nCflags:", flags, sizeof flags);
+    value_of(text, "\nLibs:", libs, sizeof libs);
+    test_packs_write(TEST_PACKS "/user.c", users_program, sizeof users_program - 1);
+    tool(&r, VIT_COMPILE " -std=c11 %s " TEST_PACKS "/user.c -o " TEST_PACKS "/user %s", flags, libs);
+    tool_succeeds(&r);
+    assert_non_null(strstr(text, "\nVersion: "));
+}
+
 static void the_archive_exports_only_names_that_begin_with_vit(void **state) {
     (void)state;
-    static const char *const prefixes[] = {"vit_", "pack_check_", "pack_refuse"}; /* the last two: between its own files */
     tool(&r, "nm -P -g --defined-only " VIT_BUILD_DIR "/libvitrine.a");
     tool_succeeds(&r);
     int seen = 0;
     char *rest = NULL;
     for (char *line = strtok_r(r.out, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
         int good = strchr(line, '[') != NULL || strncmp(line, "__odr_asan", 10) == 0; /* "libvitrine.a[open.o]:" */
-        for (size_t i = 0; i < sizeof prefixes / sizeof prefixes[0]; i++)
-            good |= strncmp(line, prefixes[i], strlen(prefixes[i])) == 0;
+        good |= strncmp(line, "vit_", 4) == 0;
         if (!good)
             fail_msg("libvitrine.a exports %s", line);
         seen++;
@@ -173,6 +249,8 @@ int main(void) {
         cmocka_unit_test(the_header_alone_compiles_as_cpp17),
         cmocka_unit_test(the_header_twice_is_as_good_as_once),
         cmocka_unit_test(a_users_program_needs_the_archive_and_opencl_alone),
+        cmocka_unit_test(every_call_works_with_nobody_to_tell_why),
+        cmocka_unit_test(the_file_for_pkg_config_says_how_to_link),
         cmocka_unit_test(the_archive_exports_only_names_that_begin_with_vit),
         cmocka_unit_test(runtime_kernels_and_include_take_nothing_from_the_baker),
         cmocka_unit_test(the_baker_reaches_the_runtime_through_include_alone),

@@ -237,6 +237,11 @@ static void values_out_of_range_are_refused_with_what_is_taken(void **state) {
     refuses(*state, "nowhere.vit --group 3", VIT_USAGE, "power of two");
     refuses(*state, "nowhere.vit --group 512", VIT_USAGE, "256");
     refuses(*state, "nowhere.vit --loop 0", VIT_USAGE, "--loop");
+    refuses(*state, "nowhere.vit --loop info", VIT_USAGE, "or inf");
+    refuses(*state, "nowhere.vit --threads 0", VIT_USAGE, "1 to 256");
+    refuses(*state, "nowhere.vit --threads 257 --device host", VIT_USAGE, "1 to 256");
+    refuses(*state, "nowhere.vit --threads 2 --device pocl", VIT_USAGE, "--threads is for --device host");
+    refuses(*state, "nowhere.vit --host-isa avx2 --device 0", VIT_USAGE, "--host-isa is for --device host");
     refuses(*state, "nowhere.vit --device -1", VIT_USAGE, "--device");
     refuses(*state, "nowhere.vit --max-nodes 0", VIT_USAGE, "--max-nodes");
     refuses(*state, "nowhere.vit --max-list ten", VIT_USAGE, "--max-list");
@@ -267,6 +272,7 @@ static void options_that_go_together_are_accepted(void **state) {
     refuses(*state, "nowhere.vit --verify --hash --out png:x", VIT_BAD_INPUT, "nowhere.vit");
     refuses(*state, "nowhere.vit --verify --view final --quiet", VIT_BAD_INPUT, "nowhere.vit");
     refuses(*state, "nowhere.vit --verify --format rgba32f --out raw:-", VIT_BAD_INPUT, "nowhere.vit");
+    refuses(*state, "--loop inf --device host --threads 256 nowhere.vit", VIT_BAD_INPUT, "nowhere.vit");
     refuses(*state, "--lanes 16 --group 64 --fps --loop 2 -- nowhere.vit", VIT_BAD_INPUT, "nowhere.vit");
 }
 
