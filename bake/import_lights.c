@@ -30,6 +30,11 @@ static bool finite_point(const double p[3]) {
     return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
+static void take_names(const struct aiNode *node, char name[SCENE_NAME], char parent[SCENE_NAME]) {
+    (void)snprintf(name, SCENE_NAME, "%.*s", SCENE_NAME - 1, node->mName.data);
+    (void)snprintf(parent, SCENE_NAME, "%.*s", SCENE_NAME - 1, node->mParent ? node->mParent->mName.data : "");
+}
+
 /* Releases of Assimp differ in what they make of glTF's vertical angle: angle * aspect, or the true horizontal angle. So a
  * camera of known angle (1 radian, aspect 2) is sent through. */
 static bool multiplies_by_aspect(void) {
@@ -71,7 +76,7 @@ bool import_node_camera(importer *im, const struct aiNode *node, const double wo
         }
         for (int k = 0; k < 3; k++)
             camera.target[k] = camera.eye[k] + forward[k];
-        (void)snprintf(camera.name, sizeof camera.name, "%.*s", SCENE_NAME - 1, c->mName.data);
+        take_names(node, camera.name, camera.parent);
         size_t room = (size_t)m->camera_count;
         if (!import_room(im, &m->cameras, &room, room + 1, sizeof camera))
             return false;
@@ -172,11 +177,31 @@ bool import_node_light(importer *im, const struct aiNode *node, const double wor
             import_warn(im, "light '%.100s' %s; it is left out", l->mName.data, fault);
             continue;
         }
-        (void)snprintf(light.name, sizeof light.name, "%.*s", SCENE_NAME - 1, l->mName.data);
+        take_names(node, light.name, light.parent);
         size_t room = (size_t)m->light_count;
         if (!import_room(im, &m->lights, &room, room + 1, sizeof light))
             return false;
         m->lights[m->light_count++] = light;
     }
     return true;
+}
+
+const model_camera *model_camera_named(const model *m, const char *name) {
+    for (int i = 0; i < m->camera_count; i++)
+        if (!strcmp(m->cameras[i].name, name))
+            return &m->cameras[i];
+    for (int i = 0; i < m->camera_count; i++)
+        if (!strcmp(m->cameras[i].parent, name))
+            return &m->cameras[i];
+    return NULL;
+}
+
+const model_light *model_light_named(const model *m, const char *name) {
+    for (int i = 0; i < m->light_count; i++)
+        if (!strcmp(m->lights[i].name, name))
+            return &m->lights[i];
+    for (int i = 0; i < m->light_count; i++)
+        if (!strcmp(m->lights[i].parent, name))
+            return &m->lights[i];
+    return NULL;
 }

@@ -41,10 +41,10 @@ static void say_light(const scene *s, const model_light *l, progress *p) {
         progress_line(p, true, "warning: light '%.100s' has intensity 0", l->name);
 }
 
-static bool is_used(const scene *s, const char *name) {
+static bool is_used(const scene *s, const model *m, const model_light *l) {
     bool used = false;
     for (int i = 0; i < s->light_count; i++)
-        used = used || !strcmp(s->lights[i].use, name);
+        used = used || (s->lights[i].use[0] && model_light_named(m, s->lights[i].use) == l);
     return used;
 }
 
@@ -53,7 +53,7 @@ static void say_unused(const scene *s, const model *m, progress *p) {
     const model_light *first = NULL;
     int count = 0;
     for (int i = 0; i < m->light_count; i++)
-        if (!is_used(s, m->lights[i].name)) {
+        if (!is_used(s, m, &m->lights[i])) {
             first = first ? first : &m->lights[i];
             count++;
         }
@@ -82,12 +82,11 @@ static void say_emission(const scene *s, const model *m, progress *p) {
 }
 
 void light_units_say(const scene *s, const model *m, progress *p) {
-    for (int i = 0; i < s->light_count; i++)
-        for (int k = 0; k < m->light_count; k++)
-            if (s->lights[i].use[0] && !strcmp(s->lights[i].use, m->lights[k].name)) {
-                say_light(s, &m->lights[k], p);
-                break; /* tracks.c takes the first, too */
-            }
+    for (int i = 0; i < s->light_count; i++) {
+        const model_light *used = s->lights[i].use[0] ? model_light_named(m, s->lights[i].use) : NULL;
+        if (used)
+            say_light(s, used, p);
+    }
     say_unused(s, m, p);
     say_emission(s, m, p);
 }

@@ -30,12 +30,12 @@ typedef struct model_material {
 } model_material;
 
 typedef struct model_camera {
-    char name[SCENE_NAME];
+    char name[SCENE_NAME], parent[SCENE_NAME]; /* of its node and the node above, "" if there is none */
     double eye[3], target[3], up[3], fov; /* world space; fov vertical, degrees (0: not stated) */
 } model_camera;
 
 typedef struct model_light {
-    char name[SCENE_NAME];
+    char name[SCENE_NAME], parent[SCENE_NAME]; /* as with cameras */
     int kind;                  /* VIT_LIGHT_* */
     double position[3], direction[3], inner, outer; /* world space; degrees from the axis */
     double power[3];           /* W; directional: irradiance, W/m2 */
@@ -80,5 +80,10 @@ typedef void model_warn_fn(void *user, const char *line);
  * VIT_BAD_INPUT: the text names file and cause. On failure nothing is left to free. */
 vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
 void model_free(model *m);
+
+/* The first whose node is called so, or else whose parent node is: exporters hang what they turn below the node that users named
+ * (Blender's "Lamp_Orientation" below "Lamp"). NULL: there is none. import_lights.c */
+const model_camera *model_camera_named(const model *m, const char *name);
+const model_light *model_light_named(const model *m, const char *name);
 
 #endif

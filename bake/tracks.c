@@ -113,17 +113,14 @@ static void view_at(const curves *c, double t, view *v) {
 }
 
 static bool used_view(const scene *s, const model *m, view *v) {
-    for (int i = 0; i < m->camera_count; i++) {
-        const model_camera *c = &m->cameras[i];
-        if (strcmp(c->name, s->camera_use) != 0)
-            continue;
-        *v = (view){.fov = c->fov > 0.0 ? c->fov : 60.0, .exposure = s->camera_exposure > 0.0 ? s->camera_exposure : 1.0};
-        memcpy(v->eye, c->eye, sizeof v->eye);
-        memcpy(v->target, c->target, sizeof v->target);
-        memcpy(v->up, c->up, sizeof v->up);
-        return true;
-    }
-    return false;
+    const model_camera *c = model_camera_named(m, s->camera_use);
+    if (!c)
+        return false;
+    *v = (view){.fov = c->fov > 0.0 ? c->fov : 60.0, .exposure = s->camera_exposure > 0.0 ? s->camera_exposure : 1.0};
+    memcpy(v->eye, c->eye, sizeof v->eye);
+    memcpy(v->target, c->target, sizeof v->target);
+    memcpy(v->up, c->up, sizeof v->up);
+    return true;
 }
 
 /* ---- the automatic scene: once round the model, lit from above ---- */
@@ -274,24 +271,21 @@ static bool make_light(const model *m, const scene_light *light, const scene_lig
 
 /* `light` and one key, from the model's light that it names. */
 static bool used_light(const model *m, const scene_light *wish, scene_light *light, scene_light_key *key) {
-    for (int i = 0; i < m->light_count; i++) {
-        const model_light *l = &m->lights[i];
-        if (strcmp(l->name, wish->use) != 0)
-            continue;
-        *light = *wish;
-        light->kind = l->kind;
-        light->inner = l->inner;
-        light->outer = l->outer;
-        light->range = wish->range > 0.0 ? wish->range : l->range;
-        *key = (scene_light_key){0};
-        for (int k = 0; k < 3; k++) {
-            key->position[k] = l->position[k];
-            key->target[k] = l->position[k] + l->direction[k];
-            key->power[k] = l->power[k];
-        }
-        return true;
+    const model_light *l = model_light_named(m, wish->use);
+    if (!l)
+        return false;
+    *light = *wish;
+    light->kind = l->kind;
+    light->inner = l->inner;
+    light->outer = l->outer;
+    light->range = wish->range > 0.0 ? wish->range : l->range;
+    *key = (scene_light_key){0};
+    for (int k = 0; k < 3; k++) {
+        key->position[k] = l->position[k];
+        key->target[k] = l->position[k] + l->direction[k];
+        key->power[k] = l->power[k];
     }
-    return false;
+    return true;
 }
 
 /* One light, all frames. */

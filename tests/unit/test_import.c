@@ -673,6 +673,26 @@ static void lights_have_their_power_cone_and_range(void **state) {
     model_free(&m);
 }
 
+/* Blender up to 3.5 turns lamps and cameras by a node of its own below the one that the user named. */
+static void lights_and_cameras_answer_to_the_node_above(void **state) {
+    model m;
+    (void)state;
+    put_gltf("",
+             LIGHTS("{\"type\":\"point\"},{\"type\":\"point\",\"intensity\":2}")
+             "\"scenes\":[{\"nodes\":[0,1,3,5]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"children\":[2]}," LIT_NODE("Lamp_Orientation", "", "0")
+             ",{\"name\":\"Eye\",\"children\":[4]},{\"name\":\"Eye_Orientation\",\"camera\":0}," LIT_NODE("Other", "", "1")
+             "],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1.0,\"znear\":0.1}}]," MATERIAL(BASE("")));
+    import_good(FILE_OF("quad.gltf"), &m);
+    assert_true(m.light_count == 2 && m.camera_count == 1);
+    assert_ptr_equal(model_light_named(&m, "Lamp"), model_light_named(&m, "Lamp_Orientation"));
+    assert_string_equal(model_light_named(&m, "Lamp")->name, "Lamp_Orientation");
+    assert_true(model_light_named(&m, "Other")->stated[0] == 2.0 && !model_light_named(&m, "Lam"));
+    assert_ptr_equal(model_camera_named(&m, "Eye"), &m.cameras[0]);
+    assert_ptr_equal(model_camera_named(&m, "Eye_Orientation"), &m.cameras[0]);
+    assert_null(model_camera_named(&m, "Lamp"));
+    model_free(&m);
+}
+
 /* ---- files that are not good ---- */
 
 static void a_file_without_a_triangle_is_refused(void **state) {
@@ -860,6 +880,7 @@ int main(void) {
         T(importing_twice_gives_the_same_bytes),
         T(a_camera_stands_where_its_node_is),
         T(lights_have_their_power_cone_and_range),
+        T(lights_and_cameras_answer_to_the_node_above),
         T(a_file_without_a_triangle_is_refused),
         T(a_missing_mesh_is_refused),
         T(files_of_no_known_kind_are_refused),
