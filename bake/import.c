@@ -1,14 +1,14 @@
 #include "importer.h"
 #include <assimp/cimport.h>
 #include <ctype.h>
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-
-enum { MAX_DEPTH = 256 }; /* of the node tree */
+#include <unistd.h>
 
 /* ---- messages and memory ---- */
 
@@ -73,8 +73,8 @@ static void multiply(const double a[12], const struct aiMatrix4x4 *b, double out
 
 static bool add_node(importer *im, const struct aiNode *node, const double parent[12], int depth) {
     double world[12];
-    if (depth > MAX_DEPTH)
-        return import_fail(im, "nodes are nested deeper than %d", MAX_DEPTH);
+    if (depth > IMPORT_DEPTH)
+        return import_fail(im, "nodes are nested deeper than %d", IMPORT_DEPTH);
     multiply(parent, &node->mTransformation, world);
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         if (node->mMeshes[i] >= im->ai->mNumMeshes)
@@ -99,6 +99,8 @@ bool import_has_suffix(const char *file, const char *suffix) {
 static bool refuse_empty(importer *im) {
     if (im->not_finite)
         return import_fail(im, "has no triangle with finite positions");
+    if (im->too_far)
+        return import_fail(im, "has no triangle nearer than %g m: a vertex is at %g m", (double)IMPORT_FAR, im->farthest);
     if (im->bad_index)
         return import_fail(im, "has no triangle whose indices are in range");
     if (im->bad_polygon)
@@ -108,17 +110,37 @@ static bool refuse_empty(importer *im) {
     return import_fail(im, "has no triangle");
 }
 
+/* Meshes whose nodes Assimp has lost stand where the root does: in RAW files that is where they belong. */
+static bool add_strays(importer *im, const scene_mesh *mesh) {
+    unsigned strays = 0;
+    double world[12];
+    multiply(mesh->transform, &im->ai->mRootNode->mTransformation, world);
+    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
+        if (import_is_stray(im, i)) {
+            strays++;
+            if (!import_mesh(im, im->ai->mMeshes[i], world))
+                return false;
+        }
+    if (strays > 0 && !import_has_suffix(im->file, ".raw"))
+        import_warn(im, "the mesh reader has lost the places of %u meshes; they stand at the origin", strays);
+    return true;
+}
+
 static bool add_scene(importer *im, const scene_mesh *mesh) {
     const uint32_t before = im->m->triangles;
     if (!im->ai->mRootNode)
         return import_fail(im, "has no nodes");
     if (!import_transparency(im) || !add_node(im, im->ai->mRootNode, mesh->transform, 0))
         return false;
+    if (!add_strays(im, mesh))
+        return false;
     im->m->not_finite += im->not_finite;
     if (im->m->triangles == before && im->s->mesh_count == 1)
         return refuse_empty(im);
     if (im->not_finite)
         import_warn(im, "%llu triangles with positions that are not finite dropped", (unsigned long long)im->not_finite);
+    if (im->too_far)
+        import_warn(im, "%llu triangles with a vertex farther out than %g m dropped, one at %g m", (unsigned long long)im->too_far, (double)IMPORT_FAR, im->farthest);
     if (im->bad_index)
         import_warn(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index);
     if (im->bad_polygon)
@@ -134,22 +156,34 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     return true;
 }
 
-static bool add_file(importer *im, const scene_mesh *mesh) {
+/* What Assimp says, in one line. */
+static bool fail_by_assimp(importer *im) {
+    const char *text = aiGetErrorString();
+    if (text && strstr(text, "bad_alloc"))
+        return import_fail(im, "takes more memory than a file of its size is given");
+    return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
+}
+
+static bool check_there(importer *im) {
     struct stat st;
-    if (stat(mesh->file, &st) != 0)
-        return import_fail(im, "cannot be read");
+    if (stat(im->file, &st) != 0)
+        return import_fail(im, errno == ENOENT ? "is not there" : "cannot be read: %s", strerror(errno));
+    if (S_ISDIR(st.st_mode))
+        return import_fail(im, "is a folder, not a mesh file");
     if (!S_ISREG(st.st_mode))
         return import_fail(im, "is not a file");
-    if (!import_check_ply(im) || !import_probe(im, (size_t)st.st_size))
-        return false;
+    return access(im->file, R_OK) == 0 ? true : import_fail(im, "cannot be read: %s", strerror(errno));
+}
+
+bool import_file(importer *im, const scene_mesh *mesh) {
+    struct aiFileIO io = import_file_io(im);
     /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
-    im->ai = aiImportFile(mesh->file, 0);
-    if (!im->ai) {
-        const char *text = aiGetErrorString();
-        return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
-    }
-    const bool fine = import_triangulate(im) && add_scene(im, mesh);
-    aiReleaseImport(im->ai);
+    im->ai = aiImportFileEx(mesh->file, 0, &io);
+    if (!im->ai)
+        return fail_by_assimp(im);
+    const bool fine = import_mend_tree(im) && import_triangulate(im) && add_scene(im, mesh);
+    if (im->ai && !im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
+        aiReleaseImport(im->ai);
     return fine;
 }
 
@@ -170,9 +204,11 @@ static void next_file(importer *im, const char *file) {
     free(im->uses);
     im->uses = NULL;
     im->use_count = im->use_room = 0;
-    im->bad_index = im->not_finite = im->clear = im->bad_polygon = 0;
+    im->bad_index = im->not_finite = im->clear = im->bad_polygon = im->too_far = 0;
     im->inverse = false;
     im->shown = SHOWN_AS_SAID;
+    im->farthest = 0.0;
+    im->allowed = im->allowed_texels = 0;
     im->warned_colors = false;
     free(im->means);
     im->means = NULL;
@@ -182,14 +218,16 @@ static void next_file(importer *im, const char *file) {
     im->gltf = import_has_suffix(file, ".gltf") || import_has_suffix(file, ".glb");
 }
 
-vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
-    importer im = {.s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path};
+typedef bool read_fn(importer *im, const scene_mesh *mesh);
+
+static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, void *user, read_fn *read, model *out, vit_text *why) {
+    importer im = {.s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path, .status = VIT_BAD_INPUT};
     *out = (model){0};
     im.override_used = calloc((size_t)s->material_count + 1, sizeof *im.override_used);
     bool fine = im.override_used ? true : import_fail(&im, "out of memory");
     for (int i = 0; fine && i < s->mesh_count; i++) {
         next_file(&im, s->meshes[i].file);
-        fine = add_file(&im, &s->meshes[i]);
+        fine = check_there(&im) && import_check_ply(&im) && read(&im, &s->meshes[i]);
     }
     next_file(&im, s->path);
     for (int i = 0; fine && i < s->material_count; i++)
@@ -203,7 +241,15 @@ vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *
         return VIT_OK;
     }
     model_free(out);
-    return VIT_BAD_INPUT;
+    return im.status;
+}
+
+vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
+    return import_all(s, strict, warn, user, import_in_child, out, why);
+}
+
+vit_status model_import_here(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
+    return import_all(s, strict, warn, user, import_file, out, why);
 }
 
 void model_free(model *m) {

@@ -48,6 +48,21 @@ static void place_vertices(importer *im, instance *in) {
     }
 }
 
+/* A vertex so far out that areas would not fit a float; infinity and NaN are told of otherwise. */
+static bool is_far(importer *im, const instance *in, const uint32_t v[3]) {
+    bool far = false;
+    for (int k = 0; k < 9; k++) {
+        const float x = fabsf(in->position[3 * (size_t)v[k / 3] + (size_t)(k % 3)]);
+        if (!isfinite(x))
+            return false;
+        if (x > IMPORT_FAR) {
+            far = true;
+            im->farthest = fmax(im->farthest, (double)x);
+        }
+    }
+    return far;
+}
+
 /* Keeps the triangles that have an area, counts the others. */
 static void sift_faces(importer *im, instance *in) {
     const struct aiMesh *mesh = in->mesh;
@@ -62,6 +77,10 @@ static void sift_faces(importer *im, instance *in) {
         const uint32_t v[3] = {face->mIndices[0], face->mIndices[in->mirrored ? 2 : 1], face->mIndices[in->mirrored ? 1 : 2]};
         if (v[0] >= mesh->mNumVertices || v[1] >= mesh->mNumVertices || v[2] >= mesh->mNumVertices) {
             im->bad_index++;
+            continue;
+        }
+        if (is_far(im, in, v)) {
+            im->too_far++;
             continue;
         }
         switch (
@@ -129,12 +148,11 @@ static void vertex_uv(const instance *in, const material_use *use, uint32_t v, f
     out[1] = isfinite((float)w) ? (float)w : 0.0f;
 }
 
-/* Makes room for the instance's triangles and, at worst, three new vertices each. */
-static bool make_room(importer *im, size_t triangles) {
+bool import_make_room(importer *im, size_t more, size_t triangles) {
     model *m = im->m;
     if (triangles > VIT_MAX_TRIANGLES - m->triangles)
         return import_fail(im, "more than %u triangles", VIT_MAX_TRIANGLES);
-    const size_t vertices = m->vertices + 3 * triangles;
+    const size_t vertices = m->vertices + more;
     size_t room[3] = {im->vertex_room, im->vertex_room, im->triangle_room};
     if (!import_room(im, &m->position, &room[0], vertices, 3 * sizeof *m->position) ||
         !import_room(im, &m->normal, &room[1], vertices, 3 * sizeof *m->normal) ||
@@ -217,7 +235,7 @@ static bool add_instance(importer *im, instance *in) {
         if (!in->smooth || !import_normals(in->position, in->corner, in->triangles, in->smooth))
             return import_fail(im, "out of memory");
     }
-    if (!import_material_index(im, use, &material) || !make_room(im, in->triangles))
+    if (!import_material_index(im, use, &material) || !import_make_room(im, 3 * in->triangles, in->triangles))
         return false;
     const bool has_uv = use->uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh->mTextureCoords[use->uv_set];
     if (im->m->materials[material].image >= 0 && !has_uv && !use->warned_uv) {

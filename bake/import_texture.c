@@ -7,11 +7,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { MAX_EDGE = 16384 };
 /* Texels that a byte of an image file can stand for: deflate's 1032 to 1, a bit a texel. A file that claims more is cut short,
  * and the decoder would fill gigabytes for it. */
 #define TEXELS_A_BYTE (8 * 1032)
-#define MAX_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
 
 bool import_without(importer *im, const char *material, const char *name, const char *what, const char *instead) {
     if (im->strict)
@@ -66,23 +64,24 @@ static bool resolve(const importer *im, const char *name, char path[SCENE_PATH])
     return false;
 }
 
-static const char *decode(const uint8_t *bytes, int size, model_image *out) {
+static const char *decode(importer *im, const uint8_t *bytes, int size, model_image *out) {
     int channels;
     if (!stbi_info_from_memory(bytes, size, &out->width, &out->height, &channels) || stbi_is_hdr_from_memory(bytes, size))
         return "is not an image that can be read (PNG, JPEG, TGA, BMP)";
-    if (out->width < 1 || out->height < 1 || out->width > MAX_EDGE || out->height > MAX_EDGE)
+    if (out->width < 1 || out->height < 1 || out->width > IMPORT_EDGE || out->height > IMPORT_EDGE)
         return "is larger than 16384 pixels";
     if ((uint64_t)out->width * (uint64_t)out->height > (uint64_t)size * TEXELS_A_BYTE)
         return "is broken";
+    import_allow_texels(im, (uint64_t)out->width * (uint64_t)out->height);
     out->rgba = stbi_load_from_memory(bytes, size, &out->width, &out->height, &channels, 4);
     return out->rgba ? NULL : "is broken";
 }
 
 /* Assimp keeps embedded images as their file's bytes (height 0) or as BGRA texels. */
-static const char *decode_embedded(const struct aiTexture *t, model_image *out) {
+static const char *decode_embedded(importer *im, const struct aiTexture *t, model_image *out) {
     if (t->mHeight == 0)
-        return t->mWidth > 0 && t->mWidth <= IMAGE_FILE_MOST ? decode((const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
-    if (t->mWidth < 1 || t->mWidth > MAX_EDGE || t->mHeight > MAX_EDGE)
+        return t->mWidth > 0 && t->mWidth <= IMAGE_FILE_MOST ? decode(im, (const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
+    if (t->mWidth < 1 || t->mWidth > IMPORT_EDGE || t->mHeight > IMPORT_EDGE)
         return "is larger than 16384 pixels";
     const size_t texels = (size_t)t->mWidth * t->mHeight;
     out->width = (int)t->mWidth;
@@ -113,12 +112,14 @@ static int embedded_index(const importer *im, const char *name) {
     return !*end && end > name + 1 && index >= 0 && (unsigned long)index < im->ai->mNumTextures ? (int)index : -1;
 }
 
-static const char *load(const importer *im, int embedded, model_image *out) {
+static const char *load(importer *im, int embedded, model_image *out) {
     if (embedded >= 0)
-        return decode_embedded(im->ai->mTextures[embedded], out);
+        return decode_embedded(im, im->ai->mTextures[embedded], out);
     int size;
     uint8_t *bytes = image_file_read(out->name, &size);
-    const char *wrong = bytes ? decode(bytes, size, out) : "cannot be read";
+    if (bytes)
+        import_note_file(im, out->name, (size_t)size);
+    const char *wrong = bytes ? decode(im, bytes, size, out) : "cannot be read";
     free(bytes);
     return wrong;
 }
@@ -135,7 +136,7 @@ static bool locate(const importer *im, const char *name, bool resolved, int *emb
     return true;
 }
 
-const char *import_image(const importer *im, const char *name, bool resolved, model_image *out) {
+const char *import_image(importer *im, const char *name, bool resolved, model_image *out) {
     int embedded;
     *out = (model_image){0};
     return locate(im, name, resolved, &embedded, out->name) ? load(im, embedded, out) : "is missing";
@@ -156,10 +157,10 @@ bool import_texture(importer *im, const char *name, bool resolved, const char *m
     if (wrong)
         return import_without(im, material, name, wrong, plain);
     im->texels += (uint64_t)loaded.width * (uint64_t)loaded.height;
-    if (im->texels > MAX_TEXELS ||
+    if (im->texels > IMPORT_TEXELS ||
         !import_room(im, &m->images, &im->image_room, (size_t)m->image_count + 1, sizeof *m->images)) {
         stbi_image_free(loaded.rgba);
-        return im->texels > MAX_TEXELS ? import_fail(im, "the textures have more than 2^30 texels together") : false;
+        return im->texels > IMPORT_TEXELS ? import_fail(im, "the textures have more than 2^30 texels together") : false;
     }
     *image = m->image_count++;
     m->images[*image] = loaded;

@@ -2,13 +2,19 @@
 #ifndef VIT_BAKE_IMPORTER_H
 #define VIT_BAKE_IMPORTER_H
 
+#include "import_wire.h"
 #include "model.h"
 #include "vitrine_pack.h"
+#include <assimp/cfileio.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
 /* Transparent materials that are shown after all, since too little would be left. */
 typedef enum import_shown { SHOWN_AS_SAID, SHOWN_INVISIBLE, SHOWN_HOLES } import_shown; /* none; those of alpha 0; all */
+
+enum { IMPORT_DEPTH = 256, IMPORT_EDGE = 16384 };  /* levels of the node tree; pixels of an image's edge */
+#define IMPORT_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
+#define IMPORT_FAR 1e9f                   /* m: beyond, areas do not fit a float */
 
 /* One mesh file being read. */
 typedef struct importer {
@@ -35,6 +41,14 @@ typedef struct importer {
     bool warned_colors;
     struct texture_mean *means;         /* that were asked for, of this file */
     size_t mean_count, mean_room;
+    uint64_t too_far;                   /* triangles of this file with a vertex beyond IMPORT_FAR */
+    double farthest;                    /* m */
+    unsigned lost_nodes;                /* that were NULL in Assimp's tree */
+
+    vit_status status;                  /* of what fails: VIT_BAD_INPUT, unless it is not the file's fault */
+    wire *to_parent;                    /* in the child; else NULL */
+    uint64_t allowed, allowed_texels;   /* bytes of the files and texels of the images that earn time and memory */
+    uint64_t mapped;                    /* bytes of address space that the child began with */
 } importer;
 
 /* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
@@ -67,9 +81,27 @@ bool import_has_suffix(const char *file, const char *suffix); /* ".PLY" is ".ply
  * them. Every other file passes. */
 bool import_check_ply(importer *im);
 
-/* import_probe.c: has a child process read the file of `size` bytes first. Assimp ends the process on some malformed files, by an
- * assertion or a bad access, and does not come back from others: those are refused. Reading twice is a small part of a bake. */
-bool import_probe(importer *im, size_t size);
+/* import_child.c: has a child process read the file and appends what it sends to the model. Foreign readers end the process on some
+ * malformed files, by an assertion or a bad access, while they read, while they are asked, or while they clean up; others they
+ * do not come back from. None of it happens here: that child has limits of processor time and memory, which grow with the files
+ * that it opens. */
+bool import_in_child(importer *im, const scene_mesh *mesh);
+/* More bytes of files, more texels of images: more time and memory. */
+void import_allow(importer *im, size_t bytes);
+void import_allow_texels(importer *im, uint64_t texels);
+
+/* import.c: reads the file and appends it to the model, in this process. */
+bool import_file(importer *im, const scene_mesh *mesh);
+
+/* import_files.c: what Assimp reads files through; `im` must outlive it. */
+struct aiFileIO import_file_io(importer *im);
+/* Notes a file of so many bytes as an input. */
+void import_note_file(importer *im, const char *path, size_t bytes);
+
+/* import_tree.c: takes NULL out of the lists of Assimp's tree, or refuses it. */
+bool import_mend_tree(importer *im);
+/* A mesh that no node leads to, in a tree that had holes: its node was lost. */
+bool import_is_stray(const importer *im, unsigned mesh);
 
 /* import_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted. */
 bool import_triangulate(importer *im);
@@ -100,7 +132,7 @@ bool import_texture_mean_of(importer *im, const struct aiMaterial *ai, enum aiTe
                             float mean[4]);
 
 /* import_texture.c: decodes image `name` of this file; its texels are the caller's to free. What is wrong with it, or NULL. */
-const char *import_image(const importer *im, const char *name, bool resolved, model_image *out);
+const char *import_image(importer *im, const char *name, bool resolved, model_image *out);
 /* A texture that is missing or broken: an error if strict, else a warning that says what is done `instead`. */
 bool import_without(importer *im, const char *material, const char *name, const char *what, const char *instead);
 /* image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
@@ -122,6 +154,8 @@ bool import_normals(const float *position, const uint32_t *corner, size_t triang
 
 /* import_mesh.c: appends the triangles of `mesh`, placed by `world` (3 x 4), to the model. */
 bool import_mesh(importer *im, const struct aiMesh *mesh, const double world[12]);
+/* Makes room in the model for so many more vertices and triangles. */
+bool import_make_room(importer *im, size_t vertices, size_t triangles);
 
 /* import_lights.c: the cameras and lights that hang on `node`, whose place in the world is `world` (3 x 4). */
 bool import_node_camera(importer *im, const struct aiNode *node, const double world[12]);

@@ -49,6 +49,10 @@ void inputs_free(inputs *in) {
     *in = (inputs){0};
 }
 
+const char *inputs_path(const inputs *in, size_t index) {
+    return in->files[index].path;
+}
+
 bool inputs_hold(const inputs *in, const char *path) {
     struct stat s;
     return stat(path, &s) == 0 && find(in, &s);

@@ -17,6 +17,7 @@ typedef struct inputs {
 void inputs_add(inputs *in, const char *path);
 void inputs_free(inputs *in);
 
+const char *inputs_path(const inputs *in, size_t index);
 bool inputs_hold(const inputs *in, const char *path);
 
 /* VIT_USAGE: `path`, which `option` names, is one of the inputs, by this or another name. */

@@ -44,6 +44,14 @@ typedef struct model_light {
     double range;              /* metres; 0: none */
 } model_light;
 
+/* What is counted over all files, and travels from the child that reads one: X(name, meaning). */
+#define MODEL_COUNTS(X)                                                                                                        \
+    X(degenerate, "triangles dropped for zero area")                                                                           \
+    X(not_finite, "triangles dropped for NaN or infinite positions")                                                           \
+    X(not_triangles, "points and lines dropped")                                                                               \
+    X(default_highlights, "materials whose highlight is an exporter's default: they are matt")                                 \
+    X(principled, "MTL materials taken by Blender's Principled shader")
+
 typedef struct model {
     float *position;           /* 3 a vertex, finite */
     float *normal;             /* 3 a vertex, unit */
@@ -62,14 +70,12 @@ typedef struct model {
     int light_count;
     double lo[3], hi[3];       /* box of the vertices in use */
     double step;               /* m between neighbouring floats where the files' vertices are farthest from their origin */
-    uint64_t degenerate;       /* triangles dropped for zero area */
-    uint64_t not_finite;       /* triangles dropped for NaN or infinite positions */
-    uint64_t not_triangles;    /* points and lines dropped */
+#define X(name, meaning) uint64_t name;
+    MODEL_COUNTS(X)
+#undef X
     uint64_t warnings;         /* lines given to `warn` */
     inputs files;              /* that were read: meshes, what they refer to, textures */
-    uint32_t default_highlights; /* materials whose highlight is an exporter's default: they are matt */
-    char default_highlight[64];  /* the first of them */
-    uint32_t principled;         /* MTL materials taken by Blender's Principled shader */
+    char default_highlight[64]; /* the first of default_highlights */
 } model;
 
 /* One line, without a line feed, for the user to see. */
@@ -79,6 +85,8 @@ typedef void model_warn_fn(void *user, const char *line);
  * strict: a missing or broken texture is VIT_BAD_INPUT rather than a warning and the plain colour.
  * VIT_BAD_INPUT: the text names file and cause. On failure nothing is left to free. */
 vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
+/* The same in this process rather than in a child, for fuzzing and debuggers: a file may end it. */
+vit_status model_import_here(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
 void model_free(model *m);
 
 /* The first whose node is called so, or else whose parent node is: exporters hang what they turn below the node that users named

@@ -50,11 +50,11 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
 /* What of MTL's highlights is not what the file's letter says. */
 static void say_highlights(const model *m, progress *p) {
     if (m->default_highlights > 0)
-        progress_line(p, false, "the highlights of %u materials are what exporters write unasked (%s): matt ('specular' gives them one)",
-                      m->default_highlights, m->default_highlight);
+        progress_line(p, false, "the highlights of %llu materials are what exporters write unasked (%s): matt ('specular' gives them one)",
+                      (unsigned long long)m->default_highlights, m->default_highlight);
     if (m->principled > 0)
-        progress_line(p, false, "the highlights of %u materials (Ks 0.5, Ka grey) are Blender's Principled shader: 4 %% reflection at that level, or metal",
-                      m->principled);
+        progress_line(p, false, "the highlights of %llu materials (Ks 0.5, Ka grey) are Blender's Principled shader: 4 %% reflection at that level, or metal",
+                      (unsigned long long)m->principled);
 }
 
 /* Imports the meshes; if they lie far from the origin, moves the scene there and imports them again. */

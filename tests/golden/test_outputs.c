@@ -105,8 +105,6 @@ static void no_pack_is_written_over_what_it_is_made_of(void **state) {
     char path[256];
     (void)state;
     for (size_t i = 0; i < FILES; i++) {
-        if (i == 3 || i == 4)
-            continue;
         path_of(files[i].name, path);
         tool(&r, TOOL_BAKE " " SCENE " --device host --quiet -o %s", path);
         tool_refuses(&r, "vitrine-bake", VIT_USAGE, "is read");
@@ -118,6 +116,8 @@ static void no_pack_is_written_over_what_it_is_made_of(void **state) {
 static void a_bare_mesh_is_not_written_over(void **state) {
     (void)state;
     tool(&r, TOOL_BAKE " " FOLDER "/mesh.obj --device host --quiet -o " FOLDER "/mesh.obj");
+    tool_refuses(&r, "vitrine-bake", VIT_USAGE, "is read");
+    tool(&r, TOOL_BAKE " " FOLDER "/mesh.obj --device host --quiet -o " FOLDER "/mesh.mtl");
     tool_refuses(&r, "vitrine-bake", VIT_USAGE, "is read");
     check_inputs();
 }
@@ -138,7 +138,7 @@ static void no_report_is_written_over_the_scene(void **state) {
     (void)state;
     for (size_t k = 0; k < sizeof reports / sizeof reports[0]; k++) {
         (void)snprintf(as, sizeof as, FOLDER "/d/%s", reports[k]);
-        for (size_t i = 0; i < FILES; i += 6) { /* the scene, the sky */
+        for (size_t i = 0; i < FILES; i += 3) { /* the scene, the MTL file, the sky */
             path_of(files[i].name, path);
             refuses_links(TOOL_COST " " SCENE " --device host --quiet --no-cache -o " FOLDER "/d", as, "vitrine-cost", path);
         }
