@@ -60,8 +60,7 @@ typedef struct tally {
 static bool take_stock(importer *im, const uint64_t *of_material, tally *t) {
     static const float white[3] = {1.0f, 1.0f, 1.0f};
     model_warn_fn *warn = im->warn;
-    const uint64_t warnings = im->m->warnings;
-    const uint32_t highlights = im->m->default_highlights, principled = im->m->principled;
+    const uint64_t warnings = im->m->warnings, highlights = im->m->default_highlights, principled = im->m->principled;
     bool fine = true;
     im->warn = NULL;
     for (unsigned i = 0; fine && i < im->ai->mNumMaterials; i++) {
