@@ -29,7 +29,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     lf t = L_LOAD(hit_distance + first), length = L_F(0);
     lv3 o = lv3_load(camera->eye), d = l_camera_ray(scene, camera, round / layers, x, y), weight = lv3_set(L_F(1), L_F(1), L_F(1));
     li going = chain_goes_on(attributes, materials, round_active(scene, first, x, y, active) & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
-    lf cone = L_F(camera_cone(camera));
+    lf cone = L_F(camera_cone(scene, camera, round / layers));
     WORK_BEGIN
     for (uint i = 0; i < scene->chain && l_any(going); i++) {
         WORK_LANES(surface_points, going);

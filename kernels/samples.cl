@@ -58,7 +58,7 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
     if (l_any(hit)) {
-        lf cone = L_F(camera_cone(camera));
+        lf cone = L_F(camera_cone(scene, camera, round / layers));
         if (VIT_EFFECT_CHAINS) /* the footprint goes on widening behind a mirror as if it were flat */
             cone *= l_div(whole, l_max(t, L_F(1e-30f)));
         surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, cone);

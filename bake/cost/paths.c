@@ -165,7 +165,9 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
                  uint64_t *rays) {
     const vit_camera *c = p->camera;
     const vec3 right = vec3_load(c->right);
-    const float cone = sqrtf(fmaf(right.z, right.z, fmaf(right.y, right.y, right.x * right.x)));
+    /* Where paths are spread over the pixel, they filter textures themselves. */
+    const float cone =
+        p->filter == PATH_CENTRE ? sqrtf(fmaf(right.z, right.z, fmaf(right.y, right.y, right.x * right.x))) : 0.0f;
     vec3 o = vec3_load(c->eye), d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), right, fx), vec3_load(c->down), fy));
     float way = 0.0f;
     for (uint32_t event = 0; event <= CHAIN; event++) {
