@@ -138,6 +138,7 @@ include tests/test.mk
 include tests/fuzz.mk
 include tests/lint.mk
 include tests/coverage.mk
+include tests/smoke.mk
 
 # Bakes our scenes, plays them, verifies every hash, writes pictures.
 demo: deps
@@ -191,6 +192,7 @@ help:
 	@echo "make lint     clang-tidy and cppcheck over our sources"
 	@echo "make coverage lines of runtime/ and kernels/ that tests run: build/coverage.txt"
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
+	@echo "make smoke    short forms of bench, matrix, numeric, soak, lint, coverage, fuzz and of the build without OpenCL, for continuous integration"
 	@echo "make install  prefix=$(prefix)"
 	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz|coverage"
 

@@ -4,9 +4,12 @@
 #   tests/matrix.sh [folder of the tools, default build/release] [folder for packs and cross builds, default build/matrix]
 # Looked for: PoCL (devices, threads, work-group methods), Intel's OpenCL runtime ($INTEL_OPENCL: folder of libintelocl.so, as pip's intel-opencl-rt
 # unpacks it), Oclgrind, the built-in device host with each instruction set, and cross compilers with qemu-user for other machines.
+# VITRINE_MATRIX=smoke: one tiny pack and a way or two of each kind, so that none of this rots.
 set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
 mkdir -p "$out" && out=$(cd "$out" && pwd)
+packs="list zones buckets atrium shine" strict_packs="list zones buckets raw atrium shine" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
+if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs=tiny-zones strict_packs=zones widths=8 threads_tried=2 devices=pthread; fi
 row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
     label=$1 && shift
     rows=$((rows + 1))
@@ -18,10 +21,13 @@ row() { # name, then a command that plays $pack and exits 0 if every hash is the
 }
 absent() { echo "absent   $1"; }
 bake() { "$tools/vitrine-bake" "$tools/scenes/$1.cfg" -o "$out/$2.vit" --quiet --no-check --device host --frames 2 $3 || exit 1; }
-bake cornell list "--size 128x96 --photons 4000 --indirect-samples 1"
-bake cornell zones "--size 100x70 --photons 4000 --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
-bake cornell buckets "--size 97x61 --photons 4000 --estimate buckets --normal-keys 1 --sample-bits 16 --indirect-samples 1"
-bake atrium atrium "--size 160x90 --photons 4000 --texture-filter trilinear"
+whole() { # the packs that a smoke run leaves out
+    bake cornell list "--size 128x96 --photons 4000 --indirect-samples 1"
+    bake cornell zones "--size 100x70 --photons 4000 --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
+    bake cornell buckets "--size 97x61 --photons 4000 --estimate buckets --normal-keys 1 --sample-bits 16 --indirect-samples 1"
+    bake atrium atrium "--size 160x90 --photons 4000 --texture-filter trilinear"
+}
+[ "${VITRINE_MATRIX:-}" = smoke ] || whole
 tiny="--size 17x9 --photons 200 --tile 8"
 bake cornell tiny-list "$tiny --zones 0 --indirect-samples 1"
 bake cornell tiny-zones "$tiny --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
@@ -52,12 +58,12 @@ EOF
 play="$tools/vitrine-play --verify --quiet"
 pocl=$("$tools/vitrine-play" --list-devices | sed -n 's/^\([0-9]*\) Portable Computing Language .*/\1/p' | head -1)
 [ -n "$pocl" ] || absent "PoCL"
-for name in list zones buckets atrium shine; do
+for name in $packs; do
     pack=$out/$name.vit
     echo "== $name"
-    for device in ${pocl:+basic pthread}; do
-        for lanes in 1 8 16; do
-            for threads in 1 2; do
+    for device in ${pocl:+$devices}; do
+        for lanes in $widths; do
+            for threads in $threads_tried; do
                 [ $device$threads != basic2 ] || continue
                 row "PoCL $device, $threads threads, $lanes lanes" env POCL_DEVICES=$device POCL_MAX_PTHREAD_COUNT=$threads $play "$pack" --device $pocl --lanes $lanes
             done
@@ -67,11 +73,11 @@ for name in list zones buckets atrium shine; do
         row "PoCL work-group method $method" env POCL_WORK_GROUP_METHOD=$method POCL_CACHE_DIR="$out/pocl-$method" sh -c "mkdir -p $out/pocl-$method; exec $play $pack --device $pocl"
     done
     [ -z "$pocl" ] || row "PoCL again" $play "$pack" --device $pocl
-    for lanes in ${pocl:+1 8 16}; do
+    for lanes in ${pocl:+$widths}; do
         row "PoCL, divisions through doubles, $lanes lanes" $play "$pack" --device $pocl --wide-divide --lanes $lanes
     done
     for isa in baseline avx2 avx512; do
-        for lanes in 1 8 16; do
+        for lanes in $widths; do
             if "$tools/vitrine-play" "$pack" --quiet --explain --device host --host-isa $isa --lanes $lanes >/dev/null 2>&1; then
                 for threads in 1 2 3; do
                     row "host, $isa, $lanes lanes, $threads threads" $play "$pack" --device host --host-isa $isa --lanes $lanes --threads $threads
@@ -85,8 +91,8 @@ done
 
 if [ -n "${INTEL_OPENCL:-}" ]; then
     mkdir -p "$out/intel-icd" && echo "$INTEL_OPENCL/libintelocl.so" > "$out/intel-icd/intel.icd"
-    for name in list zones buckets atrium shine; do
-        for lanes in 1 8 16; do
+    for name in $packs; do
+        for lanes in $widths; do
             row "Intel OpenCL, $name, $lanes lanes" env OCL_ICD_VENDORS="$out/intel-icd" LD_LIBRARY_PATH="$INTEL_OPENCL${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}" $play "$out/$name.vit" --device 0 --lanes $lanes
         done
     done
@@ -102,7 +108,7 @@ oclgrind_row() { # pack, group
     [ ! -s "$out/oclgrind.log" ] || { cat "$out/oclgrind.log"; return 1; }
 }
 if command -v oclgrind >/dev/null; then
-    for name in list zones buckets raw atrium shine; do
+    for name in $strict_packs; do
         for group in 1 32; do
             row "Oclgrind, tiny $name, groups of $group: hashes, bounds, races" oclgrind_row tiny-$name $group
         done
@@ -113,11 +119,11 @@ fi
 rm -f "$out"/hashes-*
 echo 'int main(void) { return 0; }' > "$out/empty.c"
 if clang -fsanitize=memory "$out/empty.c" -o "$out/empty" 2>/dev/null; then
-    make --no-print-directory -s OPENCL=0 B=build/msan CC="clang -fsanitize=memory -fno-sanitize-recover -w" HOST_ISAS=baseline build/msan/libvitrine.a >"$out/msan.log" 2>&1 &&
+    make --no-print-directory -s OPENCL=0 B=build/msan CC="clang -fsanitize=memory -fno-sanitize-recover -w" HOST_ISAS=baseline HOST_LANES="$widths" build/msan/libvitrine.a >"$out/msan.log" 2>&1 &&
         clang -fsanitize=memory -fno-sanitize-recover -Iinclude tests/matrix/hashes.c build/msan/libvitrine.a -lpthread -lm -o "$out/hashes-msan" >>"$out/msan.log" 2>&1 ||
         echo "FAILED   MemorySanitizer: does not build, see $out/msan.log"
-    for name in list zones buckets raw atrium shine; do
-        for lanes in 1 8 16; do
+    for name in $strict_packs; do
+        for lanes in $widths; do
             row "host under MemorySanitizer, tiny $name, $lanes lanes" "$out/hashes-msan" "$out/tiny-$name.vit" $lanes
         done
     done
@@ -130,7 +136,7 @@ for machine in aarch64 riscv64 s390x; do
     if command -v $cc >/dev/null && command -v $qemu >/dev/null; then
         make --no-print-directory -s OPENCL=0 B="$build" CC=$cc "$build/libvitrine.a" >"$out/$machine.log" 2>&1 &&
             $cc -O2 -Iinclude tests/matrix/hashes.c "$build/libvitrine.a" -static -lpthread -lm -o "$out/hashes-$machine" >>"$out/$machine.log" 2>&1 || { failed=$((failed + 1)); echo "FAILED   $machine: does not build, see $out/$machine.log"; continue; }
-        for name in list zones buckets atrium shine; do
+        for name in $packs; do
             for lanes in 1 8; do
                 row "$machine under qemu, $name, $lanes lanes" $qemu "$out/hashes-$machine" "$out/$name.vit" $lanes
             done

@@ -1,4 +1,4 @@
-# One program a test file; each ends with cmocka's summary line. `make test` runs them all.
+# One program a test file, of cmocka's tests. `make test` runs them all and ends with one total.
 TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 # Sources, or names from the command line: make bench BENCH="rays open".
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
@@ -51,31 +51,36 @@ $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 JOBS ?= $(shell nproc)
 SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
 LONGEST := $(patsubst %,$(B)/tests/golden/test_%,effects furnace bounds cost bake_twice same_bits work_counts) $(B)/tests/unit/test_zones
-RUNS := $(addprefix run/,$(LONGEST) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
-.PHONY: matrix numeric run-tests run-bench run-sanitized $(RUNS)
+RUNS := $(addprefix run/,$(filter $(TEST_PROGRAMS),$(LONGEST)) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
+.PHONY: matrix numeric run-tests run-bench build-sanitized
+# What became of each test is written down here; a run of `make test` that is stopped, or cannot build, comes to no total.
+RESULTS := build/results
 test: deps
-	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize run-sanitized
+	@rm -rf $(RESULTS); mkdir -p $(RESULTS)
+	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize build-sanitized
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
-	@$(MAKE) $(SIDE_BY_SIDE) run-tests
+	@VITRINE_RESULTS=$(RESULTS) $(MAKE) $(SIDE_BY_SIDE) run-tests
+	@tests/total.sh $(RESULTS) $(RUNS:run/%=%) $(SANITIZED_PLAYS)
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix run/$(B)/tests/unit/,test_pack test_pack_forged test_pack_save test_scene) run/$(B)/tests/fuzz/test_fuzz_corpus
+SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_save scene) fuzz/test_fuzz_corpus)
+RUNS += $(filter-out $(RUNS),$(SANITIZED:%=run/build/sanitize/%))
+build-sanitized: $(SANITIZED:%=$(B)/%) $(B)/vitrine-play
 # The kernels as C, too: packs that hold each effect between them, baked by the release's baker.
-HOST_SCENES := build/release/scenes
-HOST_BAKE := build/release/vitrine-bake --quiet --no-check --device host --size 96x64 --frames 1 --photons 2000
-run-sanitized: $(SANITIZED) $(B)/vitrine-play
-	@$(MAKE) --no-print-directory config=release build/release/vitrine-bake $(HOST_SCENES)/atrium.obj
-	@mkdir -p $(B)/packs
-	@set -e; bake() { $(HOST_BAKE) $(HOST_SCENES)/$$1.cfg -o $(B)/packs/$$2.vit $$3; }; \
-	bake cornell list "--zones 0 --sample-bits 16"; \
-	bake cornell zones "--zones 2 --indirect-samples 4 --kernel flattened"; \
-	bake cornell raw "--estimate buckets --smoothing raw --normal-keys 1 --zones 0"; \
-	bake cornell sparse "--estimate buckets --indirect-samples 16 --tile 8 --bounce-sequence 1"; \
-	bake atrium atrium "--zones 0 --texture-filter trilinear"; \
-	for p in list zones raw sparse atrium; do for l in $(HOST_LANES); do echo "== host, $$l lanes, $$p"; \
-	  $(B)/vitrine-play --quiet $(B)/packs/$$p.vit --verify --device host --threads 3 --lanes $$l; done; done
-run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS)
+SANITIZED_list := cornell --zones 0 --sample-bits 16
+SANITIZED_zones := cornell --zones 2 --indirect-samples 4 --kernel flattened
+SANITIZED_raw := cornell --estimate buckets --smoothing raw --normal-keys 1 --zones 0
+SANITIZED_sparse := cornell --estimate buckets --indirect-samples 16 --tile 8 --bounce-sequence 1
+SANITIZED_atrium := atrium --zones 0 --texture-filter trilinear
+SANITIZED_PLAYS := $(addprefix sanitized-play/,list zones raw sparse atrium)
+$(SANITIZED_PLAYS): sanitized-play/%: $(B)/vitrine-bake $(SCENES_MADE)
+	@mkdir -p build/sanitize/packs
+	@tests/run.sh $@ sh -ec '$(B)/vitrine-bake $(B)/scenes/$(firstword $(SANITIZED_$*)).cfg -o build/sanitize/packs/$*.vit --quiet --no-check --device host \
+	  --size 96x64 --frames 1 --photons 2000 $(wordlist 2,99,$(SANITIZED_$*)); \
+	  for l in 1 8; do build/sanitize/vitrine-play --quiet build/sanitize/packs/$*.vit --verify --device host --threads 3 --lanes $$l; done'
+run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS) $(SANITIZED_PLAYS)
+.PHONY: $(RUNS) $(SANITIZED_PLAYS)
 $(RUNS): run/%: %
-	@echo "== $*"; $*
+	@tests/run.sh $* $*
 
 # The same test for hours' worth of frames.
 SOAK_FRAMES ?= 20000
@@ -87,11 +92,13 @@ matrix: deps
 	@$(MAKE) $(SIDE_BY_SIDE) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	@tests/matrix.sh $(B) build/matrix
 
-# The catalogue of hard cases: every numeric test whole, one table of rows, a plot a sweep.
+# The catalogue of hard cases: every numeric test whole, or those of NUMERIC="slivers scale", one table of rows, a plot a sweep.
+NUMERIC := $(NUMERIC_PROGRAMS:$(B)/tests/numeric/test_%=%)
+NUMERIC_ASKED = $(NUMERIC:%=$(B)/tests/numeric/test_%)
 numeric: deps
-	@$(MAKE) $(SIDE_BY_SIDE) $(NUMERIC_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+	@$(MAKE) $(SIDE_BY_SIDE) $(NUMERIC_ASKED) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 	@rm -rf $(B)/numeric build/numeric
-	@VITRINE_NUMERIC=whole $(MAKE) $(SIDE_BY_SIDE) $(addprefix run/,$(NUMERIC_PROGRAMS)) > $(B)/numeric.log 2>&1 || { cat $(B)/numeric.log; exit 1; }
+	@VITRINE_NUMERIC=whole $(MAKE) $(SIDE_BY_SIDE) $(addprefix run/,$(NUMERIC_ASKED)) > $(B)/numeric.log 2>&1 || { cat $(B)/numeric.log; exit 1; }
 	@tests/numeric/catalogue.sh $(B)/numeric build/numeric
 
 bench: deps

@@ -27,12 +27,12 @@ static void run(csv *c, const char *scene, const char *size, char *pack) {
     const char *cache = BENCH_FOLDER "/kernels";
     series cold = {.count = 0}, warm = {.count = 0}, check = {.count = 0};
     check_alone(pack); /* reads the pack into the file cache */
-    for (int i = 0; i < COLD_RUNS; i++) {
+    for (int i = 0; i < bench_rounds(COLD_RUNS); i++) {
         child_remove(cache);
         bench_folder(cache);
         series_add(&cold, first_frame(pack, cache));
     }
-    for (int i = 0; i < WARM_RUNS; i++) {
+    for (int i = 0; i < bench_rounds(WARM_RUNS); i++) {
         series_add(&warm, first_frame(pack, cache));
         series_add(&check, check_alone(pack));
     }
@@ -46,8 +46,8 @@ int main(void) {
     csv c = csv_open("open");
     for (size_t i = 0; i < BENCH_SCENES; i++) {
         char pack[BENCH_PATH];
-        if (scene_pack(&bench_scenes[i], bench_sizes[0], pack))
-            run(&c, bench_scenes[i].name, bench_sizes[0], pack);
+        if (scene_pack(&bench_scenes[i], bench_size(0), pack))
+            run(&c, bench_scenes[i].name, bench_size(0), pack);
     }
     csv_close(&c, "open");
     return VIT_OK;

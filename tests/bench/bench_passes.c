@@ -8,8 +8,7 @@
 
 enum { LIST, BUCKETS, RAW, ESTIMATES };
 static const char *const estimate_names[ESTIMATES] = {"list", "buckets", "raw"};
-static const uint32_t estimate_effects[ESTIMATES] = {VIT_BIT(LIST), VIT_BIT(BUCKETS),
-                                                     VIT_BIT(BUCKETS) | VIT_BIT(RAW_BUCKETS)};
+static const uint32_t estimate_effects[ESTIMATES] = {VIT_BIT(LIST), VIT_BIT(BUCKETS), VIT_BIT(BUCKETS) | VIT_BIT(RAW_BUCKETS)};
 
 typedef struct contest {
     const char *scene, *size;
@@ -24,7 +23,7 @@ typedef struct contest {
 static player open_exact(const pack_image *pack) {
     uint32_t list = 1u << 20;
     for (;;) {
-        player p = player_open(pack, list);
+        player p = player_open(pack, list, bench_device());
         for (uint32_t f = 0; f < p.need.frames; f++)
             player_frame(&p, f);
         const uint32_t want = player_stats(&p).max_list;
@@ -69,7 +68,7 @@ static void verify(contest *c) {
 }
 
 static void contest_run(contest *c) {
-    for (int round = 0; round < ROUNDS; round++)
+    for (int round = 0; round < bench_rounds(ROUNDS); round++)
         for (uint32_t f = 0; f < c->player[LIST].need.frames; f++)
             for (int e = 0; e < ESTIMATES; e++) {
                 player *p = &c->player[e];
@@ -194,18 +193,18 @@ static void run(csv *out, const char *scene, const char *size, double radius, co
 
 int main(void) {
     csv out = csv_open("passes");
-    for (size_t i = 0; i < BENCH_SCENES * BENCH_SIZES; i++) {
-        const bench_scene *s = &bench_scenes[i / BENCH_SIZES];
-        const char *size = bench_sizes[i % BENCH_SIZES];
-        char path[BENCH_PATH];
-        if (!scene_pack(s, size, path))
-            continue;
-        pack_image baked = image_load(path);
-        run(&out, s->name, size, 0, &baked);
-        if (s->radius > 0)
-            run(&out, s->name, size, s->radius, &baked);
-        image_free(&baked);
-    }
+    for (size_t i = 0; i < BENCH_SCENES; i++)
+        for (size_t k = 0; bench_size(k); k++) {
+            const bench_scene *s = &bench_scenes[i];
+            char path[BENCH_PATH];
+            if (!scene_pack(s, bench_size(k), path))
+                continue;
+            pack_image baked = image_load(path);
+            run(&out, s->name, bench_size(k), 0, &baked);
+            if (s->radius > 0)
+                run(&out, s->name, bench_size(k), s->radius, &baked);
+            image_free(&baked);
+        }
     csv_close(&out, "passes");
     return VIT_OK;
 }

@@ -18,7 +18,11 @@ typedef struct whitted_scene {
 
 static const whitted_scene scenes[] = {
     {"bunny", {0.94, 0.93, 0.28, 0.26}, NULL, "", {.name = "bunny", .mesh = "stanford/bun_zipper.ply"}},
-    {"balls", {1.85, 1.54, 0.58, 0.58}, VIT_BUILD_DIR "/scenes/balls.cfg", "mirror,glass,", {.name = "balls", .mesh = "balls.obj", .own = true}},
+    {"balls",
+     {1.85, 1.54, 0.58, 0.58},
+     VIT_BUILD_DIR "/scenes/balls.cfg",
+     "mirror,glass,",
+     {.name = "balls", .mesh = "balls.obj", .own = true}},
 };
 #define SCENES (sizeof scenes / sizeof *scenes)
 
@@ -62,22 +66,24 @@ static bool write_bunny(const char *mesh, const char *path) {
 
 /* False if the scene is not at hand. */
 static bool bake(const whitted_scene *s, size_t mode, char out[BENCH_PATH]) {
-    char mesh[BENCH_PATH], cfg[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", to[] = "-o", quiet[] = "--quiet", no_check[] = "--no-check",
-                                            effects[] = "--effects", chosen[64], antialias[] = "--antialias", copies[32];
-    if (!scene_mesh_path(&s->mesh, mesh))
+    char mesh[BENCH_PATH], cfg[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", to[] = "-o", quiet[] = "--quiet",
+                                            no_check[] = "--no-check", effects[] = "--effects", chosen[64],
+                                            antialias[] = "--antialias", copies[32], size[] = "--size", tiny[] = "96x72";
+    if ((bench_smoke() && !s->mesh.own) || !scene_mesh_path(&s->mesh, mesh))
         return false;
     bench_folder(BENCH_FOLDER);
     snprintf(cfg, sizeof cfg, "%s", s->cfg ? s->cfg : BENCH_FOLDER "/whitted-bunny.cfg");
     if (!s->cfg && !write_bunny(mesh, cfg))
         bench_fail("%s: %s", cfg, strerror(errno));
-    snprintf(out, BENCH_PATH, BENCH_FOLDER "/whitted-%s-%zu.vit", s->name, mode);
+    snprintf(out, BENCH_PATH, BENCH_FOLDER "/whitted-%s-%zu%s.vit", s->name, mode, bench_smoke() ? "-tiny" : "");
     if (is_newer(out, cfg) && is_newer(out, baker) && is_newer(out, mesh))
         return true;
     printf("baking %s\n", out);
     const bool none = s->effects[0] != 0 && strcmp(modes[mode].effects, "none") == 0; /* of its own, but the materials' */
     snprintf(chosen, sizeof chosen, "%.*s%s", (int)strlen(s->effects) - none, s->effects, none ? "" : modes[mode].effects);
     snprintf(copies, sizeof copies, "%s", modes[mode].antialias);
-    char *const argv[] = {baker, cfg, to, out, quiet, no_check, effects, chosen, antialias, copies, NULL};
+    char *const argv[] = {baker, cfg, to, out, quiet, no_check, effects, chosen, antialias, copies, bench_smoke() ? size : NULL,
+                          tiny,  NULL};
     child_run(argv, NULL, false);
     return true;
 }
@@ -98,7 +104,7 @@ static void *read_pack(const char *path, size_t *size) {
 /* As vitrine-play opens a pack: frames are rendered in place. */
 static void open_pack(contestant *c, const char *path) {
     vit_text why;
-    vit_open_info info = {.profile = 1};
+    vit_open_info info = {.profile = 1, .device = bench_device()};
     *c = (contestant){0};
     info.pack = c->pack = read_pack(path, &info.pack_size);
     if (vit_require(&info, &c->need, &why) != VIT_OK)
@@ -176,7 +182,7 @@ int main(int argc, char **argv) {
         open_pack(&c[i / MODES][i % MODES], path);
         verify(&c[i / MODES][i % MODES], s->name);
     }
-    for (int round = 0; round < ROUNDS; round++)
+    for (int round = 0; round < bench_rounds(ROUNDS); round++)
         for (size_t i = 0; i < SCENES * MODES; i++)
             if (c[i / MODES][i % MODES].v)
                 round_of(&c[i / MODES][i % MODES]);

@@ -27,6 +27,22 @@ bench_fail(const char *format, ...) {
     exit(VIT_FAILED);
 }
 
+/* VITRINE_BENCH=smoke: every bench to its end, tiny and once, on our own scenes, with all that it verifies; its times say
+ * nothing. */
+static inline bool bench_smoke(void) {
+    const char *wish = getenv("VITRINE_BENCH");
+    return wish && strcmp(wish, "smoke") == 0;
+}
+
+static inline int bench_rounds(int usual) {
+    return bench_smoke() ? 1 : usual;
+}
+
+/* Device 0; where no kernel of OpenCL is what a bench is about, a smoke run takes the device that compiles nothing. */
+static inline unsigned bench_device(void) {
+    return bench_smoke() ? VIT_DEVICE_HOST : 0;
+}
+
 static inline void *bench_array(size_t count, size_t size) {
     void *p = calloc(count ? count : 1, size);
     if (!p)
@@ -93,7 +109,7 @@ static inline series series_exact(double value) {
     return (series){.value = {value}, .count = 1};
 }
 
-/* build/bench/NAME.csv, begun anew by each run. */
+/* build/bench/NAME.csv, begun anew by each run; a smoke run's does not take its place. */
 typedef struct csv {
     FILE *file;
     char date[32], cpu[128];
@@ -124,14 +140,18 @@ static inline void csv_field(FILE *f, const char *text) {
     fputs("\",", f);
 }
 
+static inline const char *bench_results(void) {
+    return bench_smoke() ? "build/bench-smoke" : "build/bench";
+}
+
 static inline csv csv_open(const char *name) {
     csv c = {0};
     char path[256];
     const time_t now = time(NULL);
     struct tm utc;
     bench_folder("build");
-    bench_folder("build/bench");
-    snprintf(path, sizeof path, "build/bench/%s.csv", name);
+    bench_folder(bench_results());
+    snprintf(path, sizeof path, "%s/%s.csv", bench_results(), name);
     c.file = fopen(path, "w");
     if (!c.file)
         bench_fail("%s: %s", path, strerror(errno));
@@ -155,8 +175,8 @@ static inline void csv_row(csv *c, const char *scene, const char *size, const ch
 
 static inline void csv_close(csv *c, const char *name) {
     if (fclose(c->file) != 0)
-        bench_fail("build/bench/%s.csv: %s", name, strerror(errno));
-    printf("\n-> build/bench/%s.csv\n", name);
+        bench_fail("%s/%s.csv: %s", bench_results(), name, strerror(errno));
+    printf("\n-> %s/%s.csv\n", bench_results(), name);
 }
 
 #endif

@@ -61,7 +61,7 @@ static inline leaks leaks_of(lab *l, const closed_mesh *mesh) {
     mesh_bake(&r);
     octree o = octree_of(&r, OCTREE_USUAL);
     ray_set s = rays_new(LEAK_BATCH);
-    for (int batch = 0; batch < LEAK_BATCHES; batch++) {
+    for (int batch = 0; batch < bench_rounds(LEAK_BATCHES); batch++) {
         closed_aim(&s, &r, &state, mesh->half);
         leaks_count(l, &r, &o, &s, &sum);
     }

@@ -6,9 +6,10 @@
 #include "ray_lab.h"
 #include "scenes.h"
 
-#define PICTURE_WIDTH 1024u /* whole tiles of 32 pixels: no padding */
-#define PICTURE_HEIGHT 576u
-#define PICTURE_SIZE "1024x576"
+/* Whole tiles of 32 pixels: no padding. */
+#define PICTURE_WIDTH (bench_smoke() ? 128u : 1024u)
+#define PICTURE_HEIGHT (bench_smoke() ? 64u : 576u)
+#define PICTURE_SIZE (bench_smoke() ? "128x64" : "1024x576")
 
 typedef struct raced_scene {
     const char *name;
@@ -29,7 +30,7 @@ static const bench_scene octree_bunny = {
 /* Scene file of a mesh in the folder of test scenes; false, with a message, if there is none. */
 static inline bool octree_scene_file(const bench_scene *s, char out[BENCH_PATH]) {
     char mesh[BENCH_PATH];
-    if (!scene_mesh_path(s, mesh))
+    if (bench_smoke() || !scene_mesh_path(s, mesh))
         return false;
     bench_folder(BENCH_FOLDER);
     snprintf(out, BENCH_PATH, BENCH_FOLDER "/octree-%s.cfg", s->name);

@@ -27,8 +27,11 @@ static const bench_scene bench_scenes[] = {
 };
 #define BENCH_SCENES (sizeof bench_scenes / sizeof *bench_scenes)
 
-static const char *const bench_sizes[] = {"1280x720", "1920x1080"};
-#define BENCH_SIZES (sizeof bench_sizes / sizeof *bench_sizes)
+/* Size `i` of the pictures, NULL: there are no more. */
+static inline const char *bench_size(size_t i) {
+    static const char *const sizes[] = {"1280x720", "1920x1080", NULL}, *const smoke[] = {"96x64", NULL};
+    return bench_smoke() ? smoke[i] : sizes[i];
+}
 
 #define BENCH_PATH 1024
 
@@ -84,11 +87,11 @@ static inline bool is_newer(const char *path, const char *than) {
            (a.st_mtim.tv_sec == b.st_mtim.tv_sec && a.st_mtim.tv_nsec >= b.st_mtim.tv_nsec);
 }
 
-/* Path of the pack of scene and size, baked if need be; false if the scene is not at hand. */
+/* Path of the pack of scene and size, baked if need be; false if the scene is not at hand. A smoke run takes our own alone. */
 static inline bool scene_pack(const bench_scene *s, const char *size, char out[BENCH_PATH]) {
     char mesh[BENCH_PATH], cfg[BENCH_PATH], picture[32], baker[] = VIT_BUILD_DIR "/vitrine-bake";
     char to[] = "-o", size_option[] = "--size", quiet[] = "--quiet", no_check[] = "--no-check";
-    if (!scene_mesh_path(s, mesh))
+    if ((bench_smoke() && !s->own) || !scene_mesh_path(s, mesh))
         return false;
     bench_folder(BENCH_FOLDER);
     snprintf(cfg, sizeof cfg, BENCH_FOLDER "/%s.cfg", s->name);

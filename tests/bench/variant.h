@@ -40,10 +40,6 @@ static inline void image_free(pack_image *p) {
     *p = (pack_image){0};
 }
 
-#define VARIANT_PHOTON_EFFECTS                                                                                                 \
-    (uint32_t)(VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS) |                 \
-               VIT_BIT(RAW_BUCKETS) | VIT_BIT(FLATTENED) | VIT_BIT(NORMAL_KEYS))
-
 typedef struct variant {
     uint32_t estimate; /* VIT_BIT(LIST), or _BUCKETS, with _RAW_BUCKETS or without; 0: no photons at all */
     double radius;     /* metres; 0: the pack's own */
@@ -59,14 +55,13 @@ typedef struct variant_records {
 
 static inline void variant_apply(const variant *v, variant_records *r) {
     vit_scene *s = &r->scene;
-    if (v->estimate)
-        s->effects =
-            (s->effects & ~(uint32_t)(VIT_BIT(LIST) | VIT_BIT(BUCKETS) | VIT_BIT(RAW_BUCKETS))) | v->estimate;
+    s->effects &= ~(v->estimate ? vit_effects_upon(VIT_BIT(LIST)) | vit_effects_upon(VIT_BIT(BUCKETS))
+                                : vit_effects_upon(VIT_BIT(PHOTONS)));
+    s->effects |= v->estimate;
     if (v->estimate && v->radius > 0)
         s->radius = (float)v->radius;
     if (!v->estimate) {
-        s->effects &= ~VARIANT_PHOTON_EFFECTS;
-        s->paths = s->baked = 0;
+        s->paths = s->baked = s->cells = 0;
         for (size_t i = 0; i < (size_t)s->frames * s->lights; i++)
             r->lights[i].path_first = r->lights[i].path_count = 0;
     }
@@ -110,10 +105,10 @@ typedef struct player {
 } player;
 
 /* max_list: 0 for the pack's bound. Passes are timed. */
-static inline player player_open(const pack_image *p, uint32_t max_list) {
+static inline player player_open(const pack_image *p, uint32_t max_list, unsigned device) {
     vit_text why;
     player out = {0};
-    vit_open_info info = {.pack = p->bytes, .pack_size = p->size, .profile = 1, .max_list = max_list};
+    vit_open_info info = {.pack = p->bytes, .pack_size = p->size, .profile = 1, .max_list = max_list, .device = device};
     if (vit_require(&info, &out.need, &why) != VIT_OK)
         bench_fail("%s", why.text);
     out.arena = info.arena = aligned_alloc(64, out.need.host_bytes);

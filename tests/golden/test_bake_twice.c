@@ -37,13 +37,16 @@ static void assert_same_files(const char *a, const char *b, const char *line) {
     free(y);
 }
 
-static void assert_bakes_alike(const char *input, const char *options) {
+/* OpenCL's device measures the same: asked where its compiler has not to make yet another program. */
+enum { HOST_WAYS = 2, ALL_WAYS };
+
+static void assert_bakes_alike(const char *input, const char *options, size_t count) {
     static const struct {
         const char *environment, *options;
-    } ways[] = {{"", "--threads 1"}, {"", "--threads 3"}, {"POCL_DEVICES=basic", "--threads 2 --device 0"}};
+    } ways[ALL_WAYS] = {{"", "--threads 1"}, {"", "--threads 3"}, {"POCL_DEVICES=basic", "--threads 2 --device 0"}};
     char path[2][128];
     test_packs_begin();
-    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    for (size_t i = 0; i < count; i++) {
         (void)snprintf(path[i > 0], sizeof path[0], TEST_PACKS "/twice-%d.vit", i > 0);
         tool(&r, "%s " TOOL_BAKE " %s --quiet -o %s %s %s", ways[i].environment, input, path[i > 0], ways[i].options, options);
         tool_succeeds(&r);
@@ -56,22 +59,22 @@ static void assert_bakes_alike(const char *input, const char *options) {
 
 static void a_box_with_a_moving_light_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000");
+    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000", ALL_WAYS);
 }
 
 static void a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_PACKS "/room.cfg", "--estimate buckets");
+    assert_bakes_alike(TEST_PACKS "/room.cfg", "--estimate buckets", HOST_WAYS);
 }
 
 static void zones_and_areas_bake_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_PACKS "/room.cfg", "--zones 2 --effective-area 1 --bounce-sequence 1 --radius 0.3");
+    assert_bakes_alike(TEST_PACKS "/room.cfg", "--zones 2 --effective-area 1 --bounce-sequence 1 --radius 0.3", ALL_WAYS);
 }
 
 static void a_mesh_without_a_scene_file_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_SCENES "/furnace.obj", "--size 64x48 --frames 2 --photons 1000");
+    assert_bakes_alike(TEST_SCENES "/furnace.obj", "--size 64x48 --frames 2 --photons 1000", HOST_WAYS);
 }
 
 int main(void) {

@@ -13,6 +13,8 @@
 #include <time.h>
 
 #define FOLDER TEST_PACKS "/tools"
+/* What is asked here is the same on every device, and this one compiles nothing. */
+#define PLAY_HOST TOOL_PLAY " --device host"
 #define CAMERA "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; } ); };\n"
 
 static tool_run r;
@@ -276,16 +278,16 @@ static void verify_tells_the_first_frame_that_differs(void **state) {
     tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/altered.vit");
     tool_refuses(&r, "vitrine-play", VIT_MISMATCH, "frame 1: expected ");
     assert_non_null(strstr(r.err, "1 of 3 frames differ"));
-    tool(&r, TOOL_PLAY " --quiet --verify --frames 2 " FOLDER "/altered.vit");
+    tool(&r, PLAY_HOST " --quiet --verify --frames 2 " FOLDER "/altered.vit");
     tool_succeeds(&r);
-    tool(&r, TOOL_PLAY " --quiet " FOLDER "/altered.vit"); /* who does not ask is not told */
+    tool(&r, PLAY_HOST " --quiet " FOLDER "/altered.vit"); /* who does not ask is not told */
     tool_succeeds(&r);
     (void)empty(FOLDER);
 }
 
 static void verify_of_a_format_without_golden_hashes_is_a_mismatch(void **state) {
     (void)state;
-    tool(&r, TOOL_PLAY " --quiet --verify --format rgb565 %s", test_pack("dark"));
+    tool(&r, PLAY_HOST " --quiet --verify --format rgb565 %s", test_pack("dark"));
     tool_refuses(&r, "vitrine-play", VIT_MISMATCH, "no golden hashes");
 }
 
@@ -294,11 +296,11 @@ static void a_pack_cut_short_or_flipped_is_bad_input(void **state) {
     size_t size;
     char *bytes = test_packs_load(test_pack("lamp"), &size);
     test_packs_write(FOLDER "/bad.vit", bytes, size - 1);
-    tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/bad.vit");
+    tool(&r, PLAY_HOST " --quiet --verify " FOLDER "/bad.vit");
     tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
     bytes[size / 2] ^= 1;
     test_packs_write(FOLDER "/bad.vit", bytes, size);
-    tool(&r, TOOL_PLAY " --quiet --verify " FOLDER "/bad.vit");
+    tool(&r, PLAY_HOST " --quiet --verify " FOLDER "/bad.vit");
     tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
     free(bytes);
     (void)empty(FOLDER);
@@ -314,7 +316,7 @@ static void each_view_shows_something_else(void **state) {
     enum { COUNT = sizeof views / sizeof views[0] };
     char hashes[COUNT][64];
     for (size_t i = 0; i < COUNT; i++) {
-        tool(&r, TOOL_PLAY " --quiet --hash --frames 0 --view %s %s", views[i], test_pack("33x47"));
+        tool(&r, PLAY_HOST " --quiet --hash --frames 0 --view %s %s", views[i], test_pack("33x47"));
         tool_succeeds(&r);
         assert_int_equal(strlen(r.out), 24); /* "000000 0123456789abcdef\n" */
         (void)snprintf(hashes[i], sizeof hashes[0], "%.40s", r.out);
@@ -335,16 +337,16 @@ static void frames_in_files_have_the_right_sizes(void **state) {
     const char *pack = test_pack("33x47");
     const long pixels = 33 * 47;
     char header[160];
-    tool(&r, TOOL_PLAY " --quiet %s --out raw:" FOLDER "/a.raw", pack);
+    tool(&r, PLAY_HOST " --quiet %s --out raw:" FOLDER "/a.raw", pack);
     tool_succeeds(&r);
     assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 4 * pixels);
-    tool(&r, TOOL_PLAY " --quiet %s --format rgb565 --out raw:" FOLDER "/a.raw", pack);
+    tool(&r, PLAY_HOST " --quiet %s --format rgb565 --out raw:" FOLDER "/a.raw", pack);
     tool_succeeds(&r);
     assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 2 * pixels);
-    tool(&r, TOOL_PLAY " --quiet %s --format rgba32f --out raw:" FOLDER "/a.raw", pack);
+    tool(&r, PLAY_HOST " --quiet %s --format rgba32f --out raw:" FOLDER "/a.raw", pack);
     tool_succeeds(&r);
     assert_int_equal(bytes_of(FOLDER "/a.raw"), 2 * 16 * pixels);
-    tool(&r, TOOL_PLAY " --quiet %s --out y4m:" FOLDER "/a.y4m", pack);
+    tool(&r, PLAY_HOST " --quiet %s --out y4m:" FOLDER "/a.y4m", pack);
     tool_succeeds(&r);
     FILE *f = fopen(FOLDER "/a.y4m", "rb");
     assert_non_null(f);
@@ -352,7 +354,7 @@ static void frames_in_files_have_the_right_sizes(void **state) {
     (void)fclose(f);
     assert_int_equal(strncmp(header, "YUV4MPEG2 W33 H47 F24:1 ", 24), 0);
     assert_int_equal(bytes_of(FOLDER "/a.y4m"), (long)strlen(header) + 2 * (6 + 3 * pixels));
-    tool(&r, TOOL_PLAY " --quiet %s --out ppm:" FOLDER "/ppm", pack);
+    tool(&r, PLAY_HOST " --quiet %s --out ppm:" FOLDER "/ppm", pack);
     tool_succeeds(&r);
     assert_int_equal(bytes_of(FOLDER "/ppm/frame_00000.ppm"), 13 + 3 * pixels); /* "P6\n33 47\n255\n" */
     assert_int_equal(bytes_of(FOLDER "/ppm/frame_00001.ppm"), 13 + 3 * pixels);
@@ -361,7 +363,7 @@ static void frames_in_files_have_the_right_sizes(void **state) {
 
 static void a_png_says_its_size(void **state) {
     (void)state;
-    tool(&r, TOOL_PLAY " --quiet %s --frames 1 --out png:" FOLDER "/png", test_pack("33x47"));
+    tool(&r, PLAY_HOST " --quiet %s --frames 1 --out png:" FOLDER "/png", test_pack("33x47"));
     tool_succeeds(&r);
     size_t size;
     unsigned char *png = test_packs_load(FOLDER "/png/frame_00001.png", &size);
@@ -378,7 +380,7 @@ static void a_raw_frame_is_what_is_hashed(void **state) {
     (void)state;
     char want[64];
     size_t size;
-    tool(&r, TOOL_PLAY " --quiet --hash %s --frames 1 --out raw:" FOLDER "/a.raw", test_pack("33x47"));
+    tool(&r, PLAY_HOST " --quiet --hash %s --frames 1 --out raw:" FOLDER "/a.raw", test_pack("33x47"));
     tool_succeeds(&r);
     void *frame = test_packs_load(FOLDER "/a.raw", &size);
     (void)snprintf(want, sizeof want, "000001 %016llx\n", (unsigned long long)vit_hash(frame, size));
@@ -389,7 +391,7 @@ static void a_raw_frame_is_what_is_hashed(void **state) {
 
 static void frames_beyond_the_path_are_refused_with_what_there_is(void **state) {
     (void)state;
-    tool(&r, TOOL_PLAY " --quiet %s --frames 2:9", test_pack("33x47"));
+    tool(&r, PLAY_HOST " --quiet %s --frames 2:9", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "frames 0 to 1");
 }
 

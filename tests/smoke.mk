@@ -1,0 +1,40 @@
+# Short forms of all that `make test` does not run, to their ends and with all that they check, so that none of it rots: .ci/run. They time
+# nothing. Each is the very target, with less to do.
+SMOKE_BENCHES := $(BENCH:tests/bench/bench_%.c=smoke-bench/%)
+# With and without OpenCL; a file of each folder; a reader, the frame and the player of a pack; and each fuzzer for a few seconds.
+SMOKE_NO_OPENCL := HOST_ISAS=baseline HOST_LANES=8
+SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack_write.c bake/cost/front.c
+SMOKE_COVERED := unit/test_pack golden/test_no_allocation
+SMOKE_SECONDS := 5
+SMOKES := $(addprefix smoke-,bench numeric soak no-opencl lint coverage fuzz matrix)
+.PHONY: smoke build-benches $(SMOKES) $(SMOKE_BENCHES)
+smoke:
+	@set -e; for s in $(SMOKES); do echo "== $$s"; $(MAKE) --no-print-directory $$s; done
+	@echo "smoke: $(SMOKES:smoke-%=%) ran to their ends"
+
+smoke-bench: deps
+	@$(MAKE) $(SIDE_BY_SIDE) build-benches
+	@VITRINE_BENCH=smoke $(MAKE) $(SIDE_BY_SIDE) $(SMOKE_BENCHES)
+build-benches: $(BENCH_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+$(SMOKE_BENCHES): smoke-bench/%: $(B)/tests/bench/bench_%
+	@tests/run.sh $@ $<
+smoke-matrix:
+	@VITRINE_MATRIX=smoke $(MAKE) --no-print-directory matrix
+smoke-numeric:
+	@$(MAKE) --no-print-directory numeric NUMERIC="grazing depth_slices"
+smoke-soak:
+	@$(MAKE) --no-print-directory soak SOAK_FRAMES=64
+# It must ask for no package of OpenCL's, and play what the other has baked.
+smoke-no-opencl: $(B)/vitrine-bake $(SCENES_MADE)
+	@! $(MAKE) --no-print-directory -n deps OPENCL=0 | grep -iE 'opencl|pocl'
+	@$(MAKE) $(SIDE_BY_SIDE) OPENCL=0 $(SMOKE_NO_OPENCL) tools
+	@$(B)/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
+	@$(B)-no-opencl/vitrine-play $(B)/smoke.vit --verify
+	@$(B)-no-opencl/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)-no-opencl/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
+	@cmp $(B)/smoke.vit $(B)-no-opencl/smoke.vit
+smoke-lint:
+	@$(MAKE) --no-print-directory lint LINTED="$(SMOKE_LINTED)"
+smoke-coverage:
+	@$(MAKE) --no-print-directory coverage COVERED="$(SMOKE_COVERED)" COVERED_VIEWS="final depth" COVERAGE_LEAST=1
+smoke-fuzz:
+	@$(MAKE) --no-print-directory fuzz FUZZ_SECONDS=$(SMOKE_SECONDS)
