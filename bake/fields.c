@@ -115,10 +115,10 @@ static void spell(const char *list, const char *quote, char *out, size_t room) {
 
 static bool read_listed(const place *at, const config_setting_t *s, const field *f, int *out) {
     const int type = config_setting_type(s);
-    const bool number = f->kind == FIELD_AMONG, fits = number ? type == CONFIG_TYPE_INT : type == CONFIG_TYPE_STRING;
+    const bool number = f->kind == FIELD_AMONG, fits = number ? type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64 : type == CONFIG_TYPE_STRING;
     char text[80] = "", allowed[128];
     if (fits && number)
-        (void)snprintf(text, sizeof text, "%d", config_setting_get_int(s));
+        (void)snprintf(text, sizeof text, "%lld", config_setting_get_int64(s));
     else if (fits)
         (void)snprintf(text, sizeof text, "%s", config_setting_get_string(s));
     const int found = fits ? fields_place(f->allowed, text) : -1;
@@ -127,7 +127,7 @@ static bool read_listed(const place *at, const config_setting_t *s, const field 
     if (found < 0)
         return fields_fail(at, s, "'%s' must be %s%s%s%.64s%s", f->name, allowed, fits ? ", got " : "", fits ? quote : "", text,
                            fits ? quote : "");
-    *out = number ? config_setting_get_int(s) : found;
+    *out = number ? (int)config_setting_get_int64(s) : found; /* it is in the list */
     return true;
 }
 

@@ -1,9 +1,10 @@
 #include "image_file.h"
+#include "file_trouble.h"
 #include <stdio.h>
 #include <stdlib.h>
 
 uint8_t *image_file_read(const char *path, int *size) {
-    FILE *file = fopen(path, "rb");
+    FILE *file = file_trouble(path) ? NULL : fopen(path, "rb"); /* a pipe is not waited for */
     uint8_t *bytes = NULL;
     long end = -1;
     if (file && fseek(file, 0, SEEK_END) == 0 && (end = ftell(file)) > 0 && end <= IMAGE_FILE_MOST && fseek(file, 0, SEEK_SET) == 0)

@@ -1,14 +1,12 @@
+#include "file_trouble.h"
 #include "importer.h"
 #include <assimp/cimport.h>
 #include <ctype.h>
-#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* ---- messages and memory ---- */
 
@@ -165,14 +163,8 @@ static bool fail_by_assimp(importer *im) {
 }
 
 static bool check_there(importer *im) {
-    struct stat st;
-    if (stat(im->file, &st) != 0)
-        return import_fail(im, errno == ENOENT ? "is not there" : "cannot be read: %s", strerror(errno));
-    if (S_ISDIR(st.st_mode))
-        return import_fail(im, "is a folder, not a mesh file");
-    if (!S_ISREG(st.st_mode))
-        return import_fail(im, "is not a file");
-    return access(im->file, R_OK) == 0 ? true : import_fail(im, "cannot be read: %s", strerror(errno));
+    const char *trouble = file_trouble(im->file);
+    return trouble ? import_fail(im, "%s", trouble) : true;
 }
 
 bool import_file(importer *im, const scene_mesh *mesh) {

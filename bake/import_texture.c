@@ -1,3 +1,4 @@
+#include "file_trouble.h"
 #include "image_file.h"
 #include "importer.h"
 #include <stb/stb_image.h>
@@ -119,7 +120,7 @@ static const char *load(importer *im, int embedded, model_image *out) {
     uint8_t *bytes = image_file_read(out->name, &size);
     if (bytes)
         import_note_file(im, out->name, (size_t)size);
-    const char *wrong = bytes ? decode(im, bytes, size, out) : "cannot be read";
+    const char *wrong = bytes ? decode(im, bytes, size, out) : file_trouble(out->name) ? file_trouble(out->name) : "is empty or cannot be read";
     free(bytes);
     return wrong;
 }

@@ -1,15 +1,10 @@
+#include "scene_files.h"
 #include "scene_reader.h"
+#include "scene_text.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-enum {
-    MAX_FILE = 16 << 20,
-    MAX_DEPTH = 10,
-    MAX_INCLUDES = 256
-}; /* bytes a file; libconfig's own depth of includes; all of a scene */
 
 static const field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
@@ -167,88 +162,32 @@ void scene_quality_text(const scene_quality *q, char *text, size_t room) {
             used += fields_write(&quality_fields[i], &g, text + used, room - used);
 }
 
-/* Name between the quotes of an @include line; empty if libconfig would read another one than stands there: with zero bytes,
- * escapes or line feeds in it. False if the line is no @include. */
-static bool include_name(const char *line, size_t length, char *name, size_t room) {
-    const char *end = line + length;
-    line += strspn(line, " \t");
-    if (strncmp(line, "@include", 8) != 0)
-        return false;
-    line += 8;
-    line += strspn(line, " \t");
-    if (*line != '"')
-        return false;
-    const size_t used = strcspn(++line, "\"\\");
-    const bool plain = line + used < end && line[used] == '"' && used < room;
-    (void)snprintf(name, room, "%.*s", plain ? (int)used : 0, line);
-    return true;
-}
-
-/* The files of a scene. */
-typedef struct sources {
-    inputs *files;
-    int left; /* includes that may follow: files that include the next one twice each make 2^depth of them */
-} sources;
-
-static bool check_file(const place *at, const char *path, int depth, sources *all);
-
-/* libconfig hands includes to a scanner that ends the whole process on a folder or a device: look first. */
-static bool check_includes(const place *at, const char *path, FILE *file, int depth, sources *all) {
-    char *line = NULL;
-    size_t size = 0;
-    bool fine = true;
-    ssize_t length;
-    for (unsigned number = 1; fine && (length = getline(&line, &size, file)) >= 0; number++) {
-        char name[SCENE_PATH], full[2 * SCENE_PATH];
-        if (!include_name(line, (size_t)length, name, sizeof name))
-            continue;
-        struct stat st;
-        const int used = snprintf(full, sizeof full, "%s%s", at->folder, name);
-        const bool below = name[0] && name[0] != '/' && used > 0 && used < SCENE_PATH;
-        if (!below || depth >= MAX_DEPTH || all->left == 0) {
-            (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: %s", path, number,
-                           !below               ? "@include takes a path below the scene's folder"
-                           : depth >= MAX_DEPTH ? "@include goes deeper than 10 files"
-                                                : "more than 256 files are included");
-            fine = false;
-        } else if (stat(full, &st) == 0) { /* a missing one is libconfig's to report, unless a comment holds it */
-            --all->left;
-            fine = check_file(at, full, depth + 1, all);
-        }
-    }
-    free(line);
-    return fine;
-}
-
-static bool check_file(const place *at, const char *path, int depth, sources *all) {
-    struct stat st;
-    place here = *at;
-    here.path = path;
-    if (stat(path, &st) != 0)
-        return fields_fail(&here, NULL, "cannot be read");
-    if (!S_ISREG(st.st_mode))
-        return fields_fail(&here, NULL, "is not a file");
-    if (st.st_size > MAX_FILE)
-        return fields_fail(&here, NULL, "is larger than %d MiB", MAX_FILE >> 20);
-    FILE *file = fopen(path, "r");
+/* libconfig knows no byte order mark. */
+static bool read_text(config_t *config, const char *path) {
+    char mark[3];
+    FILE *file = fopen(path, "rb");
     if (!file)
-        return fields_fail(&here, NULL, "cannot be read");
-    inputs_add(all->files, path);
-    const bool fine = check_includes(at, path, file, depth, all);
+        return false;
+    if (fread(mark, 1, sizeof mark, file) != sizeof mark || memcmp(mark, SCENE_BOM, sizeof mark) != 0)
+        rewind(file);
+    const bool fine = config_read(config, file) == CONFIG_TRUE;
     (void)fclose(file);
     return fine;
 }
 
-static bool parse(const place *at, config_t *config) {
+/* missing: an include that is not there, "" if all are. */
+static bool parse(const place *at, const char *missing, config_t *config) {
     config_set_include_dir(config, at->folder[0] ? at->folder : ".");
-    if (config_read_file(config, at->path) == CONFIG_TRUE)
+    if (read_text(config, at->path))
         return true;
     const char *text = config_error_text(config);
     const char *file = config_error_file(config);
     /* In [ ] all elements have one type, which nobody expects. */
     const bool mixed = text && strstr(text, "mismatched element type");
-    (void)snprintf(at->why->text, sizeof at->why->text, "%s:%d: %s%s", file ? file : at->path, config_error_line(config),
-                   text ? text : "cannot be read", mixed ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)" : "");
+    const bool lost = missing[0] && text && strstr(text, "include");
+    (void)snprintf(at->why->text, sizeof at->why->text, "%.200s:%d: %s%s%.100s%s", file ? file : at->path, config_error_line(config),
+                   text ? text : "cannot be read", mixed ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)" : lost ? ": '" : "", lost ? missing : "",
+                   lost ? "' is not there" : "");
     for (char *c = at->why->text; *c; c++)
         if (iscntrl((unsigned char)*c))
             *c = '?';
@@ -307,14 +246,14 @@ vit_status scene_read(const char *path, scene *out, vit_text *why) {
     char *slash = strrchr(folder, '/');
     folder[slash ? slash + 1 - folder : 0] = '\0';
     reader r = {.s = out, .at = {.path = out->path, .folder = folder, .why = why}};
-    sources all = {&out->files, MAX_INCLUDES};
-    if (!check_file(&r.at, path, 0, &all)) {
+    char missing[SCENE_PATH];
+    if (!scene_files_check(&r.at, &out->files, missing)) {
         scene_free(out);
         return VIT_BAD_INPUT;
     }
     config_t config;
     config_init(&config);
-    const bool fine = parse(&r.at, &config) && read_top(&r, config_root_setting(&config));
+    const bool fine = parse(&r.at, missing, &config) && read_top(&r, config_root_setting(&config));
     config_destroy(&config);
     if (fine) {
         add_named_files(out);

@@ -3,6 +3,7 @@
  * solid angle, goes to the texel that it lies in; so none is lost, however small and bright. Directions are chosen by
  * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "sky.h"
+#include "file_trouble.h"
 #include "image_file.h"
 #include "radiance.h"
 #include "sobol.h"
@@ -287,7 +288,7 @@ vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit
     int size, width = 0, height = 0;
     float *rgb = NULL;
     uint8_t *bytes = image_file_read(file, &size);
-    const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : "cannot be read";
+    const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : file_trouble(file) ? file_trouble(file) : "is empty or cannot be read";
     vit_status status = VIT_BAD_INPUT;
     *out = (sky){0};
     if (wrong)

@@ -239,7 +239,58 @@ static void includes_are_found_beside_the_scene(void **state) {
     scene_free(&s);
 }
 
+static void what_looks_like_a_number_in_text_or_names_is_none(void **state) {
+    scene s;
+    (void)state;
+    read_good("name = \"010, 4294967296 ,) \\\" 0x1\"; # 010 ,)\n// 4294967296\n/* 010 ,\n) */\n" GOOD
+              "materials = ( { name = \"a-010\"; color = (0, 0.010, 1e-0); } );\n",
+              &s);
+    assert_string_equal(s.name, "010, 4294967296 ,) \" 0x1");
+    assert_true(s.materials[0].color[1] == 0.01 && s.materials[0].color[2] == 1.0);
+    scene_free(&s);
+}
+
+static void a_byte_order_mark_is_passed_over(void **state) {
+    scene s;
+    (void)state;
+    read_good("\xef\xbb\xbf" GOOD "output: { width = 64; };\n", &s);
+    assert_int_equal(s.width, 64);
+    scene_free(&s);
+    put(VIT_BUILD_DIR "/tests/unit/scene_files/part.cfg", CAMERA);
+    read_good("\xef\xbb\xbf@include \"part.cfg\"\n" MESH, &s);
+    assert_int_equal(s.camera_count, 1);
+    scene_free(&s);
+}
+
+static void numbers_may_say_that_they_are_long(void **state) {
+    scene s;
+    (void)state;
+    read_good(GOOD "output: { width = 64L; };\nquality: { indirect_samples = 4L; };\n", &s);
+    assert_true(s.width == 64 && s.quality.indirect_samples == 4);
+    scene_free(&s);
+}
+
 /* ---- bad scenes ---- */
+
+static void what_an_include_holds_is_looked_at_too(void **state) {
+    static const struct {
+        const char *text, *says;
+    } parts[] = {{"output: {\nframes = 010; };\n", "part.cfg:2: '010' begins with 0"},
+                 {"\xef\xbb\xbf" CAMERA, "part.cfg: begins with a byte order mark"},
+                 {"fps = 4294967320;\n", "part.cfg:1: '4294967320' is beyond 32 bits"}};
+    scene s;
+    vit_text why;
+    (void)state;
+    put(NAME, GOOD "@include \"part.cfg\"\n");
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        put(VIT_BUILD_DIR "/tests/unit/scene_files/part.cfg", parts[i].text);
+        assert_int_equal(scene_read(NAME, &s, &why), VIT_BAD_INPUT);
+        if (!strstr(why.text, parts[i].says))
+            fail_msg("%s", why.text);
+    }
+    refuse(GOOD "\n@include \"lost.cfg\"\n", 4, "lost.cfg' is not there");
+}
+
 
 REFUSES(an_empty_file_is_refused, 0, "'meshes'", "")
 REFUSES(a_scene_without_meshes_is_refused, 0, "'meshes'", CAMERA)
@@ -258,6 +309,19 @@ REFUSES(text_that_is_no_scene_is_refused, 3, "syntax error", GOOD "hello, world\
 REFUSES(a_width_of_0_is_refused, 3, "'width' must be in [1, 7680], got 0", GOOD "output: { width = 0; };\n")
 REFUSES(a_height_of_4321_is_refused, 3, "'height' must be in [1, 4320], got 4321", GOOD "output: { height = 4321; };\n")
 REFUSES(a_width_beyond_32_bits_is_refused, 3, "'width'", GOOD "output: { width = 4294967297L; };\n")
+REFUSES(a_width_that_32_bits_would_wrap_is_refused, 3, "'4294967456' is beyond 32 bits", GOOD "output: { width = 4294967456; };\n")
+REFUSES(a_width_that_64_bits_would_wrap_is_refused, 3, "is beyond 64 bits", GOOD "output: { width = 18446744073709551776L; };\n")
+REFUSES(a_negative_number_beyond_32_bits_is_refused, 4, "'-2147483649' is beyond", GOOD "output: {\nwidth = -2147483649; };\n")
+REFUSES(frames_beyond_32_bits_are_refused, 3, "'4294967298' is beyond", GOOD "output: { frames=4294967298; };\n")
+REFUSES(a_vector_beyond_32_bits_is_refused, 3, "'4294967297' is beyond", GOOD "background = (0, 0, 4294967297);\n")
+REFUSES(an_octal_number_is_refused, 3, "'010' begins with 0", GOOD "output: { frames = 010; };\n")
+REFUSES(an_octal_number_of_64_bits_is_refused, 3, "'+010L' begins with 0", GOOD "output: { frames = +010L; };\n")
+REFUSES(a_hexadecimal_number_is_refused, 3, "'0x10' numbers are decimal", GOOD "output: { frames = 0x10; };\n")
+REFUSES(a_binary_number_is_refused, 3, "'0b10' numbers are decimal", GOOD "output: { frames = 0b10; };\n")
+REFUSES(a_choice_beyond_32_bits_is_refused, 3, "'indirect_samples'", GOOD "quality: { indirect_samples = 4294967300L; };\n")
+REFUSES(a_comma_behind_the_last_light_is_refused, 4, "',' has nothing behind it", GOOD "lights = ( { type = \"point\"; " KEYS "}\n, // last\n/* ) */ );\n")
+REFUSES(a_comma_behind_the_last_number_is_refused, 3, "',' has nothing behind it", GOOD "background = [0.0, 0.0, 0.0,];\n")
+REFUSES(utf_16_is_refused, 1, "UTF-8", "\xff\xfem")
 REFUSES(a_width_that_is_no_whole_number_is_refused, 3, "whole number", GOOD "output: { width = 640.5; };\n")
 REFUSES(no_frames_are_refused, 3, "'frames'", GOOD "output: { frames = 0; };\n")
 REFUSES(an_fps_of_0_is_refused, 3, "'fps' must be in (0, 1000], got 0", GOOD "output: { fps = 0; };\n")
@@ -337,12 +401,12 @@ static void refuse_path(const char *path, const char *what) {
 
 static void a_missing_scene_is_refused(void **state) {
     (void)state;
-    refuse_path("no/such/scene.cfg", "no/such/scene.cfg: cannot be read");
+    refuse_path("no/such/scene.cfg", "no/such/scene.cfg: is not there");
 }
 
 static void a_folder_is_refused(void **state) {
     (void)state;
-    refuse_path(folder, "is not a file");
+    refuse_path(folder, "is a folder");
 }
 
 static void an_endless_device_is_refused(void **state) {
@@ -370,7 +434,7 @@ static void a_path_beyond_all_bounds_is_refused(void **state) {
 static void an_included_folder_is_refused(void **state) {
     (void)state;
     put(NAME, GOOD "@include \".\"\n");
-    refuse_path(NAME, "is not a file");
+    refuse_path(NAME, "is a folder");
 }
 
 static void a_missing_include_is_refused_with_its_line(void **state) {
@@ -464,6 +528,23 @@ int main(void) {
         T(a_width_of_0_is_refused),
         T(a_height_of_4321_is_refused),
         T(a_width_beyond_32_bits_is_refused),
+        T(a_width_that_32_bits_would_wrap_is_refused),
+        T(a_width_that_64_bits_would_wrap_is_refused),
+        T(a_negative_number_beyond_32_bits_is_refused),
+        T(frames_beyond_32_bits_are_refused),
+        T(a_vector_beyond_32_bits_is_refused),
+        T(an_octal_number_is_refused),
+        T(an_octal_number_of_64_bits_is_refused),
+        T(a_hexadecimal_number_is_refused),
+        T(a_binary_number_is_refused),
+        T(a_choice_beyond_32_bits_is_refused),
+        T(a_comma_behind_the_last_light_is_refused),
+        T(a_comma_behind_the_last_number_is_refused),
+        T(utf_16_is_refused),
+        T(what_looks_like_a_number_in_text_or_names_is_none),
+        T(a_byte_order_mark_is_passed_over),
+        T(numbers_may_say_that_they_are_long),
+        T(what_an_include_holds_is_looked_at_too),
         T(a_width_that_is_no_whole_number_is_refused),
         T(no_frames_are_refused),
         T(an_fps_of_0_is_refused),

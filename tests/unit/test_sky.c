@@ -295,7 +295,7 @@ static void refused(const char *path, double scale, const char *what) {
 static void bad_pictures_are_told_by_name(void **state) {
     (void)state;
     static uint8_t bytes[8192];
-    refused("/nonexistent/sky.hdr", 1, "cannot be read");
+    refused("/nonexistent/sky.hdr", 1, "is not there");
     refused(write_file("#?RADIANCE\nnothing", 18), 1, "is not an image");
     refused(write_file(bytes, hdr(bytes, 6, 2, (const uint8_t[]){128, 128, 128, 128})), 1, "twice as wide");
     refused(write_file(bytes, hdr(bytes, 4, 2, (const uint8_t[]){128, 128, 128, 200})), 1, "0..1e12");
