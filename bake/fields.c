@@ -1,4 +1,5 @@
 #include "fields.h"
+#include "names.h"
 #include "scene.h"
 #include <math.h>
 #include <stdarg.h>
@@ -196,6 +197,10 @@ static bool read_field(const place *at, const config_setting_t *s, const field *
     return true;
 }
 
+static const char *field_name(const void *list, int index) {
+    return ((const field *)list)[index].name;
+}
+
 bool fields_read(const place *at, const config_setting_t *group, const field *fields, int count, void *out, uint32_t *seen) {
     *seen = 0;
     if (!config_setting_is_group(group))
@@ -205,8 +210,11 @@ bool fields_read(const place *at, const config_setting_t *group, const field *fi
         int k = 0;
         while (k < count && strcmp(fields[k].name, config_setting_name(s)) != 0)
             k++;
-        if (k == count)
-            return fields_fail(at, s, "unknown setting '%s'", config_setting_name(s));
+        if (k == count) {
+            char names[NAMES_TEXT];
+            names_offer(config_setting_name(s), field_name, fields, count, names);
+            return fields_fail(at, s, "unknown setting '%.60s'%s", config_setting_name(s), names);
+        }
         if (!read_field(at, s, &fields[k], out))
             return false;
         *seen |= (uint32_t)1 << k;

@@ -1,5 +1,6 @@
 #include "file_trouble.h"
 #include "importer.h"
+#include "names.h"
 #include <assimp/cimport.h>
 #include <ctype.h>
 #include <stdarg.h>
@@ -210,6 +211,19 @@ static void next_file(importer *im, const char *file) {
     im->gltf = import_has_suffix(file, ".gltf") || import_has_suffix(file, ".glb");
 }
 
+static const char *material_name(const void *list, int index) {
+    return ((const model *)list)->materials[index].name;
+}
+
+static bool unknown_material(importer *im, const scene_material *o) {
+    char names[NAMES_TEXT];
+    names_offer(o->name, material_name, im->m, im->m->material_count, names);
+    if (im->strict)
+        return import_fail(im, "line %d: no mesh uses a material '%.60s'%s", o->line, o->name, names);
+    import_warn(im, "line %d: no mesh uses a material '%.60s'%s", o->line, o->name, names);
+    return true;
+}
+
 typedef bool read_fn(importer *im, const scene_mesh *mesh);
 
 static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, void *user, read_fn *read, model *out, vit_text *why) {
@@ -224,7 +238,7 @@ static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, v
     next_file(&im, s->path);
     for (int i = 0; fine && i < s->material_count; i++)
         if (!im.override_used[i])
-            import_warn(&im, "line %d: no mesh uses a material '%.100s'", s->materials[i].line, s->materials[i].name);
+            fine = unknown_material(&im, &s->materials[i]);
     free(im.override_used);
     if (fine && out->triangles == 0)
         fine = import_fail(&im, "no mesh has a triangle");

@@ -247,7 +247,7 @@ void options_help(void) {
          "\n"
          "  -o, --output FILE     the pack; written under another name first, so there is never half a pack; never a file that is read\n"
          "  --explain             effects with what each adds in bytes and work, bounds, buffers; with -o the pack is written too\n"
-         "  --strict              a missing texture is an error, not a warning\n"
+         "  --strict              a missing texture, a material of the scene file that no mesh has, is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
          "  --no-check            does not compare the picture with path tracing (else seconds)\n"
          "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"

@@ -1,5 +1,6 @@
 #include "tracks.h"
 #include "curves.h"
+#include "names.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -112,6 +113,10 @@ static void view_at(const curves *c, double t, view *v) {
     v->exposure = value[10];
 }
 
+static const char *camera_name(const void *list, int index) {
+    return ((const model *)list)->cameras[index].name;
+}
+
 static bool used_view(const scene *s, const model *m, view *v) {
     const model_camera *c = model_camera_named(m, s->camera_use);
     if (!c)
@@ -175,10 +180,11 @@ static vit_status make_cameras(const scene *s, const model *m, tracks *out, vit_
     curves path = {0};
     view v = {.fov = 60.0};
     double up[3] = {0.0, 0.0, 0.0};
-    if (s->camera_use[0] && !used_view(s, m, &v))
-        return refuse(s, 0, why, "camera: no mesh has a camera '%.100s'%s%.100s%s", s->camera_use,
-                      m->camera_count ? "; there is '" : "", m->camera_count ? m->cameras[0].name : "",
-                      m->camera_count ? "'" : "");
+    if (s->camera_use[0] && !used_view(s, m, &v)) {
+        char names[NAMES_TEXT];
+        names_offer(s->camera_use, camera_name, m, m->camera_count, names);
+        return refuse(s, 0, why, "camera: no mesh has a camera '%.60s'%s", s->camera_use, names);
+    }
     if (!s->camera_use[0] && !s->automatic) {
         if (s->camera_count < 1)
             return refuse(s, 0, why, "camera: there is no key");
@@ -270,6 +276,10 @@ static bool make_light(const model *m, const scene_light *light, const scene_lig
 }
 
 /* `light` and one key, from the model's light that it names. */
+static const char *light_name(const void *list, int index) {
+    return ((const model *)list)->lights[index].name;
+}
+
 static bool used_light(const model *m, const scene_light *wish, scene_light *light, scene_light_key *key) {
     const model_light *l = model_light_named(m, wish->use);
     if (!l)
@@ -295,9 +305,11 @@ static vit_status make_track(const scene *s, const model *m, int index, tracks *
     scene_light light = s->automatic ? lamp : s->lights[index];
     scene_light_key key = {0};
     curves path = {0};
-    if (light.use[0] && !used_light(m, &s->lights[index], &light, &key))
-        return refuse(s, light.line, why, "light %d: no mesh has a point, spot or directional light '%.100s'", index + 1,
-                      light.use);
+    if (light.use[0] && !used_light(m, &s->lights[index], &light, &key)) {
+        char names[NAMES_TEXT];
+        names_offer(light.use, light_name, m, m->light_count, names);
+        return refuse(s, light.line, why, "light %d: no mesh has a point, spot or directional light '%.60s'%s", index + 1, light.use, names);
+    }
     if (light.kind == VIT_LIGHT_DIRECTIONAL && (light.window || s->lights[index].range > 0.0))
         return refuse(s, light.line, why, "light %d: 'range' and 'falloff' are for point and spot lights", index + 1);
     if (light.window && !(light.range > 0.0))

@@ -469,12 +469,14 @@ static void the_scenes_materials_beat_the_meshs(void **state) {
         "materials = ( { name = \"m\"; color = (0.25, 0.5, 1); texture = \"image.tga\"; emission = (1, 2, 3);\n"
         "cutoff = 0.125; }, { name = \"typo\"; } );\n");
     assert_int_equal(scene_read(FILE_OF("test.cfg"), &s, &why), VIT_OK);
-    assert_int_equal(model_import(&s, true, remember, NULL, &m, &why), VIT_OK);
+    assert_int_equal(model_import(&s, true, remember, NULL, &m, &why), VIT_BAD_INPUT);
+    assert_non_null(strstr(why.text, "test.cfg: line 4: no mesh uses a material 'typo'; there is 'm'"));
+    assert_int_equal(model_import(&s, false, remember, NULL, &m, &why), VIT_OK);
     const model_material *a = &m.materials[0];
     assert_true(a->albedo[0] == 0.25f && a->albedo[2] == 1.0f && a->emission[1] == 2.0f && a->cutoff == 0.125f &&
                 a->image == 0);
     assert_int_equal(m.warnings, 1);
-    assert_non_null(strstr(last_warning, "no mesh uses a material 'typo'"));
+    assert_non_null(strstr(last_warning, "no mesh uses a material 'typo'; there is 'm'"));
     model_free(&m);
     scene_free(&s);
 }

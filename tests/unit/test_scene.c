@@ -300,7 +300,7 @@ REFUSES(a_mesh_of_scale_0_is_refused, 1, "mesh 1: 'scale'", "meshes = ( { file =
 REFUSES(a_mesh_of_infinite_scale_is_refused, 1, "mesh 1: 'scale'", "meshes = ( { file = \"a\"; scale = 1e999; } );\n" CAMERA)
 REFUSES(a_mesh_that_is_no_group_is_refused, 1, "mesh 1: must be a group", "meshes = ( \"a.obj\" );\n" CAMERA)
 REFUSES(meshes_that_are_no_list_are_refused, 1, "must be a list of groups", "meshes = { file = \"a.obj\"; };\n" CAMERA)
-REFUSES(an_unknown_setting_is_refused, 3, "unknown setting 'ligths'", GOOD "ligths = ( );\n")
+REFUSES(an_unknown_setting_is_refused, 3, "unknown setting 'ligths'; there are 'lights', ", GOOD "ligths = ( );\n")
 REFUSES(an_unknown_setting_of_a_group_is_refused, 3, "output: unknown setting 'widht'", GOOD "output: { widht = 640; };\n")
 REFUSES(an_unknown_setting_of_a_key_is_refused, 4, "light 1, key 1: unknown setting 'colour'",
         GOOD "lights = ( { type = \"point\"; keys = (\n{ colour = (1, 1, 1); } ); } );\n")

@@ -221,7 +221,7 @@ static void a_camera_may_come_from_the_mesh(void **state) {
     x.s.camera_count = 0;
     strcpy(x.s.camera_use, "Cam");
     x.s.camera_exposure = 2.0;
-    refuse(&x, "test.cfg: camera: no mesh has a camera 'Cam'");
+    refuse(&x, "test.cfg: camera: no mesh has a camera 'Cam'; there is none");
     x.m.camera_count = 1;
     x.model_cameras[0] = (model_camera){.name = "Other", .eye = {1, 2, 3}, .target = {1, 2, 2}, .up = {0, 1, 0}, .fov = 90.0};
     refuse(&x, "test.cfg: camera: no mesh has a camera 'Cam'; there is 'Other'");
@@ -291,7 +291,7 @@ static void a_light_may_come_from_the_mesh(void **state) {
     set(&x, 1);
     add_light(&x, (scene_light){.use = "Lamp"}, (scene_light_key){0});
     x.lights[0].key_count = 0;
-    refuse(&x, "test.cfg:10: light 1: no mesh has a point, spot or directional light 'Lamp'");
+    refuse(&x, "test.cfg:10: light 1: no mesh has a point, spot or directional light 'Lamp'; there is none");
     x.m.light_count = 1;
     x.model_lights[0] = (model_light){.name = "Lamp",
                                       .kind = VIT_LIGHT_SPOT,
