@@ -244,6 +244,40 @@ static void lights_without_a_unit_are_watts_with_a_warning(void **state) {
     shows(l, 4.0 / LUMENS, everywhere);
 }
 
+/* FBX: percents, whole angles, down -y. */
+static const char fbx[] =
+    "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\nFBXHeaderVersion: 1003\nFBXVersion: 7300\n}\n"
+    "GlobalSettings:  {\nVersion: 1000\nProperties70:  {\nP: \"UpAxis\", \"int\", \"Integer\", \"\",1\n"
+    "P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",100\n}\n}\nObjects:  {\n"
+    "Geometry: 1, \"Geometry::G\", \"Mesh\" {\nVertices: *12 {\na: -5,0,5,5,0,5,5,0,-5,-5,0,-5\n}\nPolygonVertexIndex: *4 "
+    "{\na: 0,1,2,-4\n}\n}\n"
+    "Model: 2, \"Model::floor\", \"Mesh\" {\nVersion: 232\n}\n"
+    "Model: 3, \"Model::Spot\", \"Light\" {\nVersion: 232\nProperties70:  {\n"
+    "P: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",0,2,0\n}\n}\n"
+    "NodeAttribute: 4, \"NodeAttribute::SpotAttr\", \"Light\" {\nProperties70:  {\nP: \"LightType\", \"enum\", \"\", \"\",2\n"
+    "P: \"Color\", \"Color\", \"\", \"A\",1,0.5,0.25\nP: \"Intensity\", \"Number\", \"\", \"A\",400\n"
+    "P: \"InnerAngle\", \"Number\", \"\", \"A\",30\nP: \"OuterAngle\", \"Number\", \"\", \"A\",60\n}\nTypeFlags: "
+    "\"Light\"\n}\n}\n"
+    "Connections:  {\nC: \"OO\",2,0\nC: \"OO\",1,2\nC: \"OO\",3,0\nC: \"OO\",4,3\n}\n";
+
+static double in_fbx_cone(double c, double d) {
+    const double inner = cos(15.0 * PI / 180.0), outer = cos(30.0 * PI / 180.0),
+                 a = fmin(fmax((c - outer) / (inner - outer), 0.0), 1.0);
+    return a * a / (d * d);
+}
+
+static void a_cone_of_fbx_is_a_whole_angle(void **state) {
+    scene_lab *l = *state;
+    FILE *f = scene_lab_create(l, "lamp.fbx");
+    (void)fputs(fbx, f);
+    (void)fclose(f);
+    write_scene(l, "lamp.fbx", "{ use = \"Spot\"; }",
+                "materials = ( { name = \"DefaultMaterial\"; color = [0.5, 0.5, 0.5]; } );");
+    scene_lab_bake(l, "scene.cfg", "");
+    assert_true(scene_lab_said(l, "light 'Spot': its format states no unit: (4, 2, 1) taken as W/sr, inverse-square"));
+    shows(l, 2.0, in_fbx_cone); /* the channel in the middle */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_range_is_khr_lights_punctuals),
                                        cmocka_unit_test(the_reference_has_that_range_too),
@@ -251,6 +285,7 @@ int main(void) {
                                        cmocka_unit_test(a_scene_file_may_say_that_they_are_watts),
                                        cmocka_unit_test(emission_stays_unless_it_is_said_to_be_nits),
                                        cmocka_unit_test(a_light_of_no_intensity_is_warned_of),
-                                       cmocka_unit_test(lights_without_a_unit_are_watts_with_a_warning)};
+                                       cmocka_unit_test(lights_without_a_unit_are_watts_with_a_warning),
+                                       cmocka_unit_test(a_cone_of_fbx_is_a_whole_angle)};
     return cmocka_run_group_tests_name("a lamp over a floor", tests, scene_lab_set_up, scene_lab_tear_down);
 }
