@@ -42,7 +42,7 @@ static void sigterm_ends_a_loop_well(void **state) {
     tool_succeeds(&r);
     assert_non_null(strstr(r.err, "every hash is the pack's"));
     assert_true(lines_of(r.out) > 2 * ROUND);
-    assert_int_equal(r.out[strlen(r.out) - 1], '\n');
+    assert_true(strlen(r.out) == TOOL_TEXT - 1 || r.out[strlen(r.out) - 1] == '\n'); /* or there are more lines than text */
     play_and_end("--loop 100000000", SIGTERM);
     tool_succeeds(&r);
 }
