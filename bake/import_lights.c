@@ -74,6 +74,8 @@ bool import_node_camera(importer *im, const struct aiNode *node, const double wo
             import_warn(im, "camera '%.100s' has no direction; it is left out", c->mName.data);
             continue;
         }
+        if (c->mOrthographicWidth > 0.0f)
+            import_warn(im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees", c->mName.data);
         for (int k = 0; k < 3; k++)
             camera.target[k] = camera.eye[k] + forward[k];
         take_names(node, camera.name, camera.parent);

@@ -24,6 +24,8 @@ float import_opacity(const importer *im, const struct aiMaterial *ai) {
 }
 
 static void count_triangles(const struct aiScene *all, const struct aiNode *node, uint64_t *of_material, int depth) {
+    if (!node) /* of a damaged file */
+        return;
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         const struct aiMesh *mesh = node->mMeshes[i] < all->mNumMeshes ? all->mMeshes[node->mMeshes[i]] : NULL;
         if (!mesh || mesh->mMaterialIndex >= all->mNumMaterials)

@@ -662,6 +662,18 @@ static void a_camera_stands_where_its_node_is(void **state) {
     model_free(&m);
 }
 
+static void an_orthographic_camera_is_warned_of(void **state) {
+    model m;
+    (void)state;
+    put_gltf("",
+             "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Cam\",\"camera\":0}],\"cameras\":[{\"type\":\"orthographic\","
+             "\"orthographic\":{\"xmag\":2,\"ymag\":1,\"znear\":0.1,\"zfar\":10}}]," MATERIAL(BASE("")));
+    import_good(FILE_OF("quad.gltf"), &m);
+    assert_true(m.camera_count == 1 && m.cameras[0].fov == 0.0 && m.warnings == 1);
+    assert_non_null(strstr(last_warning, "camera 'Cam' is orthographic"));
+    model_free(&m);
+}
+
 static void lights_have_their_power_cone_and_range(void **state) {
     model m;
     (void)state;
@@ -905,6 +917,7 @@ int main(void) {
         T(a_ply_without_normals_is_imported),
         T(importing_twice_gives_the_same_bytes),
         T(a_camera_stands_where_its_node_is),
+        T(an_orthographic_camera_is_warned_of),
         T(lights_have_their_power_cone_and_range),
         T(lights_and_cameras_answer_to_the_node_above),
         T(a_file_without_a_triangle_is_refused),
