@@ -70,6 +70,14 @@ static void multiply(const double a[12], const struct aiMatrix4x4 *b, double out
         }
 }
 
+static bool place_mesh(importer *im, unsigned index, const double world[12]) {
+    const uint32_t before = im->m->triangles;
+    const bool fine = import_mesh(im, im->ai->mMeshes[index], world);
+    im->placed[index].places++;
+    im->placed[index].triangles += im->m->triangles - before;
+    return fine;
+}
+
 static bool add_node(importer *im, const struct aiNode *node, const double parent[12], int depth) {
     double world[12];
     if (depth > IMPORT_DEPTH)
@@ -78,7 +86,7 @@ static bool add_node(importer *im, const struct aiNode *node, const double paren
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         if (node->mMeshes[i] >= im->ai->mNumMeshes)
             return import_fail(im, "node '%.100s' has mesh %u of %u", node->mName.data, node->mMeshes[i], im->ai->mNumMeshes);
-        if (!import_mesh(im, im->ai->mMeshes[node->mMeshes[i]], world))
+        if (!place_mesh(im, node->mMeshes[i], world))
             return false;
     }
     if (!import_node_camera(im, node, world) || !import_node_light(im, node, world))
@@ -117,7 +125,7 @@ static bool add_strays(importer *im, const scene_mesh *mesh) {
     for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
         if (import_is_stray(im, i)) {
             strays++;
-            if (!import_mesh(im, im->ai->mMeshes[i], world))
+            if (!place_mesh(im, i, world))
                 return false;
         }
     if (strays > 0 && !import_has_suffix(im->file, ".raw"))
@@ -125,13 +133,35 @@ static bool add_strays(importer *im, const scene_mesh *mesh) {
     return true;
 }
 
+/* The model's list of meshes. */
+static bool list_meshes(importer *im) {
+    model *m = im->m;
+    size_t room = (size_t)m->mesh_count, more = 0;
+    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
+        more += im->placed[i].places > 0;
+    if (more > 0 && !import_room(im, &m->meshes, &room, (size_t)m->mesh_count + more, sizeof *m->meshes))
+        return false;
+    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
+        if (im->placed[i].places > 0) {
+            model_mesh *to = &m->meshes[m->mesh_count++];
+            *to = im->placed[i];
+            to->file = im->file_index;
+            (void)snprintf(to->name, sizeof to->name, "%.*s", SCENE_NAME - 1, im->ai->mMeshes[i]->mName.data);
+        }
+    return true;
+}
+
 static bool add_scene(importer *im, const scene_mesh *mesh) {
     const uint32_t before = im->m->triangles;
     if (!im->ai->mRootNode)
         return import_fail(im, "has no nodes");
-    if (!import_transparency(im) || !add_node(im, im->ai->mRootNode, mesh->transform, 0))
-        return false;
-    if (!add_strays(im, mesh))
+    im->placed = calloc((size_t)im->ai->mNumMeshes + 1, sizeof *im->placed);
+    if (!im->placed)
+        return import_fail(im, "out of memory");
+    const bool placed = import_transparency(im) && add_node(im, im->ai->mRootNode, mesh->transform, 0) && add_strays(im, mesh) && list_meshes(im);
+    free(im->placed);
+    im->placed = NULL;
+    if (!placed)
         return false;
     im->m->not_finite += im->not_finite;
     if (im->m->triangles == before && im->s->mesh_count == 1)
@@ -233,6 +263,7 @@ static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, v
     bool fine = im.override_used ? true : import_fail(&im, "out of memory");
     for (int i = 0; fine && i < s->mesh_count; i++) {
         next_file(&im, s->meshes[i].file);
+        im.file_index = (uint32_t)i;
         fine = check_there(&im) && import_check_ply(&im) && read(&im, &s->meshes[i]);
     }
     next_file(&im, s->path);
@@ -270,6 +301,7 @@ void model_free(model *m) {
     free(m->images);
     free(m->cameras);
     free(m->lights);
+    free(m->meshes);
     inputs_free(&m->files);
     *m = (model){0};
 }

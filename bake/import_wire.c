@@ -12,7 +12,7 @@ enum { MOST_NAMED = 1 << 20 };
 
 /* The head of a model: how many of each follow, in this order, and what is added up. */
 typedef struct model_head {
-    uint64_t vertices, triangles, materials, images, cameras, lights, files, overrides;
+    uint64_t vertices, triangles, materials, images, cameras, lights, meshes, files, overrides;
     uint64_t texels;
 #define X(name, meaning) uint64_t name;
     MODEL_COUNTS(X)
@@ -61,6 +61,7 @@ void wire_send_model(const importer *im, int images, wire *to) {
                              .images = (uint64_t)(m->image_count - images),
                              .cameras = (uint64_t)m->camera_count,
                              .lights = (uint64_t)m->light_count,
+                             .meshes = (uint64_t)m->mesh_count,
                              .files = m->files.count,
                              .overrides = (uint64_t)im->s->material_count,
 #define X(name, meaning) .name = m->name,
@@ -78,6 +79,7 @@ void wire_send_model(const importer *im, int images, wire *to) {
     put(to, m->materials, (size_t)m->material_count * sizeof *m->materials);
     put(to, m->cameras, (size_t)m->camera_count * sizeof *m->cameras);
     put(to, m->lights, (size_t)m->light_count * sizeof *m->lights);
+    put(to, m->meshes, (size_t)m->mesh_count * sizeof *m->meshes);
     put(to, im->override_used, (size_t)im->s->material_count);
     for (int i = images; i < m->image_count; i++)
         send_image(&m->images[i], to);
@@ -173,7 +175,7 @@ static bool good_light(model_light *l) {
 /* Counts that can be together. */
 static bool good_head(const importer *im, const model_head *h) {
     return h->triangles <= VIT_MAX_TRIANGLES && h->vertices <= 3 * h->triangles && h->materials <= h->triangles &&
-           h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->files <= MOST_NAMED &&
+           h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->meshes <= MOST_NAMED && h->files <= MOST_NAMED &&
            h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels && isfinite(h->step);
 }
 
@@ -228,9 +230,10 @@ static bool receive_materials(importer *im, const model_head *h, wire *from) {
 
 static bool receive_named(importer *im, const model_head *h, wire *from) {
     model *m = im->m;
-    size_t cameras = (size_t)m->camera_count, lights = (size_t)m->light_count; /* the lists are as long as what they hold */
+    size_t cameras = (size_t)m->camera_count, lights = (size_t)m->light_count, meshes = (size_t)m->mesh_count; /* the lists are as long as what they hold */
     if ((h->cameras > 0 && !import_room(im, &m->cameras, &cameras, cameras + (size_t)h->cameras, sizeof *m->cameras)) ||
-        (h->lights > 0 && !import_room(im, &m->lights, &lights, lights + (size_t)h->lights, sizeof *m->lights))) {
+        (h->lights > 0 && !import_room(im, &m->lights, &lights, lights + (size_t)h->lights, sizeof *m->lights)) ||
+        (h->meshes > 0 && !import_room(im, &m->meshes, &meshes, meshes + (size_t)h->meshes, sizeof *m->meshes))) {
         from->refused = true;
         return false;
     }
@@ -240,6 +243,14 @@ static bool receive_named(importer *im, const model_head *h, wire *from) {
     for (uint64_t i = 0; i < h->lights; i++, m->light_count++)
         if (!get(from, &m->lights[m->light_count], sizeof *m->lights) || !good_light(&m->lights[m->light_count]))
             return false;
+    for (uint64_t i = 0; i < h->meshes; i++) {
+        model_mesh *mesh = &m->meshes[m->mesh_count];
+        if (!get(from, mesh, sizeof *mesh))
+            return false;
+        mesh->name[sizeof mesh->name - 1] = '\0';
+        mesh->file = im->file_index;
+        m->mesh_count++;
+    }
     for (uint64_t i = 0; i < h->overrides; i++) {
         unsigned char used;
         if (!get(from, &used, sizeof used))

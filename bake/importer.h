@@ -43,6 +43,8 @@ typedef struct importer {
     size_t mean_count, mean_room;
     uint64_t too_far;                   /* triangles of this file with a vertex beyond IMPORT_FAR */
     double farthest;                    /* m */
+    uint32_t file_index;                /* in scene.meshes */
+    model_mesh *placed;                 /* a mesh of the file each: places and triangles so far */
     unsigned lost_nodes;                /* that were NULL in Assimp's tree */
 
     vit_status status;                  /* of what fails: VIT_BAD_INPUT, unless it is not the file's fault */

@@ -2,6 +2,7 @@
 #include "check.h"
 #include "cost/adds.h"
 #include "cost/fit_pack.h"
+#include "list.h"
 #include "options.h"
 #include "pipeline.h"
 #include <signal.h>
@@ -150,7 +151,15 @@ static vit_status explain(bake *b, vit_text *why) {
     return VIT_OK;
 }
 
+static vit_status list_input(bake *b, vit_text *why) {
+    scene *s = &b->pipeline.scene;
+    const vit_status status = pipeline_read(b->options.input, s, why);
+    return status == VIT_OK ? list_print(s, b->options.strict, b->options.json, stdout, why) : status;
+}
+
 static vit_status run(bake *b, vit_text *why) {
+    if (b->options.list)
+        return list_input(b, why);
     const pipeline_packed *packed = &b->packed;
     vit_status status = make_pack(b, why);
     progress_end(&b->progress);

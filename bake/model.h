@@ -44,6 +44,14 @@ typedef struct model_light {
     double range;              /* metres; 0: none */
 } model_light;
 
+/* A mesh of a mesh file, as its author named it. */
+typedef struct model_mesh {
+    char name[SCENE_NAME];
+    uint32_t file;             /* index in scene.meshes */
+    uint32_t places;           /* where nodes put it */
+    uint64_t triangles;        /* that are in the model, of all places */
+} model_mesh;
+
 /* What is counted over all files, and travels from the child that reads one: X(name, meaning). */
 #define MODEL_COUNTS(X)                                                                                                        \
     X(degenerate, "triangles dropped for zero area")                                                                           \
@@ -68,6 +76,8 @@ typedef struct model {
     int camera_count;
     model_light *lights;
     int light_count;
+    model_mesh *meshes;        /* those that a node puts somewhere */
+    int mesh_count;
     double lo[3], hi[3];       /* box of the vertices in use */
     double step;               /* m between neighbouring floats where the files' vertices are farthest from their origin */
 #define X(name, meaning) uint64_t name;

@@ -66,7 +66,7 @@ static bool flag(const char *name, options *o) {
         const char *name;
         bool *to;
     } flags[] = {{"--explain", &o->explain},  {"--strict", &o->strict}, {"--quiet", &o->quiet}, {"--all-formats", &o->all_formats}, {"--no-check", &o->no_check},
-                 {"--version", &o->version}, {"--help", &o->help},     {"-h", &o->help}};
+                 {"--list", &o->list}, {"--json", &o->json}, {"--version", &o->version}, {"--help", &o->help},     {"-h", &o->help}};
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++)
         if (strcmp(name, flags[i].name) == 0)
             return *flags[i].to = true;
@@ -174,8 +174,10 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
         } else if (strcmp(argv[i], "-") == 0) {
             return usage(why, "-", "a scene or mesh is read from a file, not from standard input");
         } else if (flag(w.name, out)) {
-            if (w.joined)
-                return usage(why, w.name, "takes no value");
+            if (w.joined && out->list && strcmp(w.name, "--list") == 0 && strcmp(w.value, "json") == 0)
+                out->json = true;
+            else if (w.joined)
+                return usage(why, w.name, strcmp(w.name, "--list") == 0 ? "alone, or --list=json" : "takes no value");
         } else {
             if (!valued(w.name, w.value, out, &known, &wants))
                 return usage(why, w.name, known ? wants : "unknown option");
@@ -188,8 +190,12 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
         return usage(why, "vitrine-bake", "which scene or mesh?");
     if (out->fit > 0 && out->fit_work > 0)
         return usage(why, "--fit-work", "one budget at a time, not --fit as well");
-    if (!out->output && !out->explain)
-        return usage(why, out->input, "where to? -o FILE.vit, or --explain");
+    if (out->json && !out->list)
+        return usage(why, "--json", "is for --list");
+    if (out->list && (out->output || out->explain || out->fit > 0 || out->fit_work > 0))
+        return usage(why, "--list", "goes without -o, --explain and --fit: nothing is baked");
+    if (!out->output && !out->explain && !out->list)
+        return usage(why, out->input, "where to? -o FILE.vit, or --explain, or --list");
     return VIT_OK;
 }
 
@@ -247,6 +253,7 @@ void options_help(void) {
          "\n"
          "  -o, --output FILE     the pack; written under another name first, so there is never half a pack; never a file that is read\n"
          "  --explain             effects with what each adds in bytes and work, bounds, buffers; with -o the pack is written too\n"
+         "  --list[=json]         bakes nothing: meshes, materials, textures, lights and their units, cameras, extensions, what is not done\n"
          "  --strict              a missing texture, a material of the scene file that no mesh has, is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
          "  --no-check            does not compare the picture with path tracing (else seconds)\n"

@@ -6,7 +6,7 @@
 
 typedef struct options {
     const char *input, *output;
-    bool explain, strict, quiet, all_formats, no_check, help, version;
+    bool explain, strict, quiet, all_formats, no_check, help, version, list, json;
     unsigned threads;          /* 0: all cores */
     const char *device;        /* as vit_device_find() takes it; NULL: the default */
     /* Overrides of the scene file; 0, NULL or negative: none. */

@@ -109,6 +109,22 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses(TEST_SCENES "/furnace.cfg --effects" OUT, VIT_USAGE, "--effects");
 }
 
+static void a_list_bakes_nothing(void **state) {
+    (void)state;
+    tool(&r, TOOL_BAKE " --list " TEST_SCENES "/cornell.cfg");
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.out, "meshes 7\n"));
+    assert_true(r.err[0] == '\0');
+    tool(&r, TOOL_BAKE " --list=json " TEST_SCENES "/cornell.cfg");
+    tool_succeeds(&r);
+    assert_int_equal(r.out[0], '{');
+    bake_refuses("--list=yaml " TEST_SCENES "/cornell.cfg", VIT_USAGE, "--list");
+    bake_refuses("--json " TEST_SCENES "/cornell.cfg", VIT_USAGE, "--json");
+    bake_refuses("--list " TEST_SCENES "/cornell.cfg" OUT, VIT_USAGE, "--list");
+    bake_refuses("--list " FOLDER "/nowhere.glb", VIT_BAD_INPUT, "is not there");
+    assert_int_equal(empty(FOLDER), 0);
+}
+
 static void an_option_and_its_value_may_be_one_word(void **state) {
     (void)state;
     tool(&r, TOOL_BAKE " --quiet --device=host --size=16x12 --frames=1 --photons=10 " TEST_SCENES "/furnace.cfg --output=" FOLDER "/out.vit");
@@ -406,6 +422,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_baker_refuses_options_that_it_does_not_know),
         cmocka_unit_test(the_baker_refuses_values_out_of_range),
+        cmocka_unit_test(a_list_bakes_nothing),
         cmocka_unit_test(an_option_and_its_value_may_be_one_word),
         cmocka_unit_test(the_baker_names_a_file_that_is_missing),
         cmocka_unit_test(the_baker_refuses_bad_scenes_with_file_and_line),

@@ -1,0 +1,172 @@
+#include "cost/report_parts.h"
+#include "list_parts.h"
+#include <inttypes.h>
+
+/* "name": */
+static void key(FILE *to, const char *name) {
+    (void)fprintf(to, "\"%s\": ", name);
+}
+
+static void text(FILE *to, const char *name, const char *value) {
+    key(to, name);
+    text_json(to, value);
+}
+
+static void numbers(FILE *to, const char *name, const double *values, int count) {
+    key(to, name);
+    (void)fputc('[', to);
+    for (int i = 0; i < count; i++) {
+        (void)fputs(i ? ", " : "", to);
+        text_number(to, values[i], "null");
+    }
+    (void)fputc(']', to);
+}
+
+static void floats(FILE *to, const char *name, const float values[3]) {
+    const double wide[3] = {(double)values[0], (double)values[1], (double)values[2]};
+    numbers(to, name, wide, 3);
+}
+
+static void open_list(FILE *to, const char *name) {
+    (void)fprintf(to, ",\n  \"%s\": [", name);
+}
+
+static void next(FILE *to, size_t index) {
+    (void)fputs(index ? ",\n    {" : "\n    {", to);
+}
+
+static void materials(const model *m, FILE *to) {
+    char kind[LIST_WORD];
+    open_list(to, "materials");
+    for (int i = 0; i < m->material_count; i++) {
+        const model_material *k = &m->materials[i];
+        next(to, (size_t)i);
+        text(to, "name", k->name);
+        (void)fprintf(to, ", \"kind\": \"%s\", \"triangles\": %" PRIu64 ", ", list_word(SCENE_MATERIAL_KINDS, k->kind, kind),
+                      k->triangles);
+        floats(to, "albedo", k->albedo);
+        (void)fputs(", ", to);
+        floats(to, "specular", k->specular);
+        (void)fputs(", ", to);
+        floats(to, "emission", k->emission);
+        (void)fputs(", ", to);
+        if (k->image >= 0)
+            text(to, "texture", m->images[k->image].name);
+        else
+            (void)fputs("\"texture\": null", to);
+        (void)fputc('}', to);
+    }
+    (void)fputs("]", to);
+}
+
+static void lights(const model *m, FILE *to) {
+    char kind[LIST_WORD];
+    open_list(to, "lights");
+    for (int i = 0; i < m->light_count; i++) {
+        const model_light *l = &m->lights[i];
+        next(to, (size_t)i);
+        text(to, "name", l->name);
+        (void)fprintf(to, ", \"kind\": \"%s\", ", list_word(SCENE_LIGHT_KINDS, (uint32_t)l->kind, kind));
+        numbers(to, "position", l->position, 3);
+        (void)fputs(", ", to);
+        numbers(to, "direction", l->direction, 3);
+        (void)fputs(", ", to);
+        numbers(to, "stated", l->stated, 3);
+        (void)fputs(", ", to);
+        if (list_stated_unit(l)[0])
+            text(to, "stated_unit", list_stated_unit(l));
+        else
+            (void)fputs("\"stated_unit\": null", to);
+        (void)fputs(", ", to);
+        numbers(to, "power", l->power, 3);
+        (void)fputs(", ", to);
+        text(to, "power_unit", list_power_unit(l));
+        (void)fputs(", \"range\": ", to);
+        text_number(to, l->range, "null");
+        (void)fputc('}', to);
+    }
+    (void)fputs("]", to);
+}
+
+static void cameras(const model *m, FILE *to) {
+    open_list(to, "cameras");
+    for (int i = 0; i < m->camera_count; i++) {
+        const model_camera *c = &m->cameras[i];
+        next(to, (size_t)i);
+        text(to, "name", c->name);
+        (void)fputs(", ", to);
+        numbers(to, "eye", c->eye, 3);
+        (void)fputs(", ", to);
+        numbers(to, "target", c->target, 3);
+        (void)fputs(", ", to);
+        numbers(to, "up", c->up, 3);
+        (void)fputs(", \"fov\": ", to);
+        if (c->fov > 0.0)
+            text_number(to, c->fov, "null");
+        else
+            (void)fputs("null", to);
+        (void)fputc('}', to);
+    }
+    (void)fputs("]", to);
+}
+
+static void meshes(const list *l, FILE *to) {
+    const model *m = &l->model;
+    open_list(to, "meshes");
+    for (int i = 0; i < m->mesh_count; i++) {
+        next(to, (size_t)i);
+        text(to, "name", m->meshes[i].name);
+        (void)fputs(", ", to);
+        text(to, "file", l->s->meshes[m->meshes[i].file].file);
+        (void)fprintf(to, ", \"triangles\": %" PRIu64 ", \"places\": %u}", m->meshes[i].triangles, m->meshes[i].places);
+    }
+    (void)fputs("]", to);
+}
+
+static void textures(const model *m, FILE *to) {
+    open_list(to, "textures");
+    for (int i = 0; i < m->image_count; i++) {
+        next(to, (size_t)i);
+        text(to, "name", m->images[i].name);
+        (void)fprintf(to, ", \"width\": %d, \"height\": %d}", m->images[i].width, m->images[i].height);
+    }
+    (void)fputs("]", to);
+}
+
+static void extensions(const list *l, FILE *to) {
+    open_list(to, "extensions");
+    for (size_t i = 0; i < l->extension_count; i++) {
+        const gltf_extension *e = &l->extensions[i].extension;
+        next(to, i);
+        text(to, "name", e->name);
+        (void)fputs(", ", to);
+        text(to, "file", l->extensions[i].file);
+        (void)fprintf(to, ", \"required\": %s, \"read\": %s}", e->required ? "true" : "false", e->read ? "true" : "false");
+    }
+    (void)fputs("]", to);
+}
+
+void list_for_programs(const list *l, FILE *to) {
+    const model *m = &l->model;
+    (void)fputs("{\n  ", to);
+    text(to, "file", l->s->path);
+    (void)fprintf(to, ",\n  \"triangles\": %u,\n  \"vertices\": %u,\n  ", m->triangles, m->vertices);
+    numbers(to, "lo", m->lo, 3);
+    (void)fputs(",\n  ", to);
+    numbers(to, "hi", m->hi, 3);
+#define X(name, meaning) (void)fprintf(to, ",\n  \"" #name "\": %" PRIu64, m->name);
+    MODEL_COUNTS(X)
+#undef X
+    meshes(l, to);
+    materials(m, to);
+    textures(m, to);
+    lights(m, to);
+    cameras(m, to);
+    extensions(l, to);
+    open_list(to, "not_done");
+    for (size_t i = 0; i < l->not_done_count; i++) {
+        (void)fputs(i ? ",\n    " : "\n    ", to);
+        text_json(to, l->not_done[i]);
+    }
+    (void)fputs("]\n}\n", to);
+}

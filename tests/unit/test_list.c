@@ -1,0 +1,170 @@
+/* What --list says. What is hard: names come from strangers and go into JSON and onto terminals; extensions stand in a part of
+ * the file that Assimp does not give. Strategy: small files made here, one with the worst of names, whose JSON must be valid by
+ * RFC 8259 and hold what was put in; extensions in all the places where the words may stand without being the list. */
+#include "gltf_extensions.h"
+#include "json_check.h"
+#include "list.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+#define FOLDER VIT_BUILD_DIR "/tests/unit/list_files"
+#define FILE_OF(name) FOLDER "/" name
+
+static void put(const char *path, const void *bytes, size_t size) {
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(bytes, 1, size, f), size);
+    assert_int_equal(fclose(f), 0);
+}
+
+static void put_text(const char *path, const char *text) {
+    put(path, text, strlen(text));
+}
+
+/* What is printed of a mesh or scene file; the caller frees it. */
+static char *list_of(const char *path, bool json) {
+    scene s;
+    vit_text why = {{0}};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&text, &size);
+    assert_non_null(to);
+    const bool is_scene = strstr(path, ".cfg") != NULL;
+    assert_int_equal(is_scene ? scene_read(path, &s, &why) : scene_for_mesh(path, &s, &why), VIT_OK);
+    const vit_status status = list_print(&s, false, json, to, &why);
+    if (status != VIT_OK)
+        fail_msg("%s", why.text);
+    scene_free(&s);
+    assert_int_equal(fclose(to), 0);
+    return text;
+}
+
+static void holds(const char *text, const char *what) {
+    if (!strstr(text, what))
+        fail_msg("'%s' is not in:\n%s", what, text);
+}
+
+/* A triangle, a lamp, a camera; the names of mesh and material end a line, close a string and are no UTF-8. */
+static void put_odd(void) {
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    put(FILE_OF("odd.bin"), corners, sizeof corners);
+    put_text(FILE_OF("odd.gltf"), "{\"asset\":{\"version\":\"2.0\",\"extensionsUsed\":[\"NOT_THIS\"]},\"extras\":{"
+                                  "\"extensionsRequired\":[\"NOR_THIS\"]},\"scene\":0,"
+                                  "\"extensionsUsed\" : [ \"KHR_lights_punctual\",\"VENDOR_strange\\\"one\" , "
+                                  "\"KHR_materials_ior\"],\"extensionsRequired\":[\"VENDOR_needed\"],"
+                                  "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"translation\":"
+                                  "[0,2,0],\"extensions\":{\"KHR_lights_punctual\":"
+                                  "{\"light\":0}}},{\"name\":\"Eye\",\"camera\":0}],\"cameras\":[{\"type\":\"perspective\","
+                                  "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":1,"
+                                  "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","
+                                  "\"intensity\":68.3,\"name\":\"extensionsUsed\"}]}},"
+                                  "\"buffers\":[{\"uri\":\"odd.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
+                                  "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+                                  "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
+                                  "\"materials\":[{\"name\":\"m\\\"a\\\\t\\n</script>\"}],\"meshes\":[{\"name\":\"odd "
+                                  "\xff\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+                                  "\"material\":0}]}]}");
+}
+
+static void odd_names_are_valid_json(void **state) {
+    (void)state;
+    put_odd();
+    char *text = list_of(FILE_OF("odd.gltf"), true);
+    if (!json_valid(text))
+        fail_msg("no JSON:\n%s", text);
+    holds(text, "\"name\": \"m\\\"a\\\\t\\u000a\\u003c/script\\u003e\"");
+    holds(text, "{\"name\": \"Lamp\", \"kind\": \"point\", \"position\": [0, 2, 0]");
+    holds(text, "\"stated_unit\": \"cd\"");
+    holds(text, "\"power_unit\": \"W\"");
+    holds(text, "{\"name\": \"Eye\", \"eye\": [0, 0, 0]");
+    holds(text, "\"triangles\": 1, \"places\": 1}");
+    free(text);
+}
+
+static void people_see_one_line_a_thing(void **state) {
+    (void)state;
+    put_odd();
+    char *text = list_of(FILE_OF("odd.gltf"), false);
+    holds(text, "1 triangles, 3 vertices, box (0, 0, 0) to (1, 1, 0) m");
+    holds(text, "\nmeshes 1\n  'odd ");
+    holds(text, "\n  'm\"a\\t?</script>' matt, 1 triangles");
+    holds(text,
+          "\nlights 1\n  'Lamp' point at (0, 2, 0): the file says (68.3, 68.3, 68.3) cd, taken as (1.257, 1.257, 1.257) W\n");
+    holds(text, "\ncameras 1\n  'Eye' at (0, 0, 0)");
+    holds(text, "'VENDOR_needed' required, not read");
+    holds(text, "'KHR_materials_ior' used, read");
+    free(text);
+}
+
+static void only_the_files_own_lists_of_extensions_count(void **state) {
+    gltf_extension list[GLTF_EXTENSIONS];
+    (void)state;
+    put_odd();
+    assert_int_equal(gltf_extensions(FILE_OF("odd.gltf"), list), 4);
+    assert_string_equal(list[0].name, "KHR_lights_punctual");
+    assert_true(list[0].read && !list[0].required);
+    assert_string_equal(list[3].name, "VENDOR_needed");
+    assert_true(list[3].required && !list[3].read);
+    put_text(FILE_OF("odd.obj"), "v 0 0 0\n");
+    assert_int_equal(gltf_extensions(FILE_OF("odd.obj"), list), 0);
+    assert_int_equal(gltf_extensions(FILE_OF("nowhere.gltf"), list), 0);
+}
+
+static void extensions_of_a_glb_are_found_and_broken_ones_do_no_harm(void **state) {
+    static const char json[] = "{\"extensionsUsed\":[\"A\",\"B\",\"A\"],\"extensionsRequired\":[\"B\"]} ";
+    gltf_extension list[GLTF_EXTENSIONS];
+    unsigned char glb[20 + sizeof json] = "glTF\2\0\0\0\0\0\0\0\0\0\0\0JSON";
+    (void)state;
+    glb[12] = sizeof json - 1;
+    memcpy(glb + 20, json, sizeof json - 1);
+    put(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
+    assert_int_equal(gltf_extensions(FILE_OF("a.glb"), list), 2);
+    assert_true(strcmp(list[1].name, "B") == 0 && list[1].required && !list[0].required);
+    memset(glb + 12, 0xff, 4); /* longer than the file */
+    put(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
+    assert_int_equal(gltf_extensions(FILE_OF("a.glb"), list), 0);
+    for (size_t cut = 0; cut < sizeof json; cut++) { /* ended anywhere */
+        put(FILE_OF("a.gltf"), json, cut);
+        assert_in_range(gltf_extensions(FILE_OF("a.gltf"), list), 0, 2);
+    }
+}
+
+static void what_is_not_done_is_told(void **state) {
+    (void)state;
+    put_text(FILE_OF("b.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd nowhere.png\n");
+    put_text(FILE_OF("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    put_text(FILE_OF("b.cfg"), "meshes = ( { file = \"b.obj\"; }, { file = \"odd.gltf\"; } );\ncamera: { use = \"Eye\"; };\n");
+    put_odd();
+    char *text = list_of(FILE_OF("b.cfg"), true);
+    assert_true(json_valid(text));
+    holds(text, "\"not_done\": [\n    ");
+    holds(text, "nowhere.png");
+    holds(text, "\"file\": \"" FOLDER "/odd.gltf\", \"triangles\": 1");
+    free(text);
+    text = list_of(FILE_OF("b.cfg"), false);
+    holds(text, "\nnot done 1\n");
+    free(text);
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    (void)mkdir(FOLDER, 0777);
+    return 0;
+}
+
+int main(void) {
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(odd_names_are_valid_json),
+        cmocka_unit_test(people_see_one_line_a_thing),
+        cmocka_unit_test(only_the_files_own_lists_of_extensions_count),
+        cmocka_unit_test(extensions_of_a_glb_are_found_and_broken_ones_do_no_harm),
+        cmocka_unit_test(what_is_not_done_is_told),
+    };
+    return cmocka_run_group_tests(tests, make_folder, NULL);
+}
