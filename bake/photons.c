@@ -138,6 +138,12 @@ static void bounce_numbers(uint32_t number, uint32_t hit, bool sequence, float *
     *v = unit_float(sequence ? number * alpha[k + 1u] + pcg(hit * 2u + 2u) : pcg(seed));
 }
 
+/* Of one that lands `way` metres from the surface that reflected it; photon_radius() of kernels/photons.cl. */
+static float photon_radius(float radius, float way, float facing) {
+    const float near = VIT_PHOTON_NEAR * way / float_max(facing, 1e-6f);
+    return float_min(radius, float_max(near, VIT_PHOTON_LEAST * radius));
+}
+
 /* power: W, incident. */
 static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, uint32_t zone) {
     const float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * PHOTON_INV_PI * inv;
@@ -189,6 +195,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
     const uint64_t effects = b->in->effects;
     const emission start = leave(&b->rays, l, i, number);
     vec3 o = start.origin, d = start.direction, power = start.power;
+    vec3 from = {0.0f, 0.0f, 0.0f}; /* normal of the matt surface that the photon comes from; 0: of none */
     if (!has_power(power))
         return;
     for (uint32_t hit = 0; hit < bounces; hit++) {
@@ -204,17 +211,20 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
         if (!matt && !(effects & VIT_BIT(CAUSTICS)))
             return;
         if (hit > 0 && matt)
-            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power, b->in->radius,
-                  cell_of(b, d, triangle, weight_of));
+            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power,
+                  photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), cell_of(b, d, triangle, weight_of));
         if (hit == 0 && !l->area && !l->sky)
             power = vec3_scale(power, range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
         if (matt) {
-            const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular) : (vec3){0.0f, 0.0f, 0.0f};
+            const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
+                                                                                         : (vec3){0.0f, 0.0f, 0.0f};
             power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
             d = cosine_lobe(s.face, u, v);
             o = s.position;
+            from = s.face;
         } else {
+            from = (vec3){0.0f, 0.0f, 0.0f};
             d = shine_on(b->in->ray_offset, &s, d, t, u, &o, &power);
         }
         if (!has_power(power))

@@ -215,14 +215,16 @@ static void measuring(void *user, const char *stage, double fraction) {
 
 /* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. Zones and areas come
  * later: they depend on the radius. */
-static vit_status settle_radius(bounds_input *in, pipeline_packed *out, vit_text *why) {
+static vit_status settle_radius(const pipeline *p, bounds_input *in, pipeline_packed *out, vit_text *why) {
     double stored;
     const uint64_t effects = in->scene->effects;
     in->scene->effects &= ~(VIT_BIT(ZONES) | VIT_BIT(AREA));
     vit_status status = bounds_count_photons(in, &stored, why);
     in->scene->effects = effects;
-    if (status == VIT_OK && stored > 0)
-        plan_set_radius(&out->plan, plan_radius(&out->plan, stored), out->photons);
+    if (status == VIT_OK && stored > 0) {
+        out->plan.scene.radius = (float)plan_radius(&out->plan, stored);
+        status = trace_photons(p, out, why); /* each photon's radius depends on it */
+    }
     return status;
 }
 
@@ -317,7 +319,7 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
                        .user = p->progress};
     vit_status status = VIT_OK;
     if ((out->plan.scene.effects & VIT_BIT(PHOTONS)) && !(c->quality.radius > 0))
-        status = settle_radius(&in, out, why);
+        status = settle_radius(p, &in, out, why);
     if (status == VIT_OK && (out->plan.scene.effects & (VIT_BIT(ZONES) | VIT_BIT(AREA))))
         status = bake_zones(p, c, out, why);
     point_sections(p, out);

@@ -273,17 +273,6 @@ double plan_radius(const plan *p, double stored) {
     return ldexp(floor(fraction * 4096 + 0.5) / 4096, exponent);
 }
 
-void plan_set_radius(plan *p, double radius, vit_photon *baked) {
-    const float r = (float)radius, r2 = r * r, inv = 1.0f / r2, scale = p->scene.radius * p->scene.radius * inv;
-    for (uint32_t i = 0; i < p->scene.baked; i++) {
-        for (int k = 0; k < 3; k++)
-            baked[i].power[k] *= scale;
-        baked[i].radius2 = r2;
-        baked[i].inv_radius2 = inv;
-    }
-    p->scene.radius = r;
-}
-
 bool plan_leaves_area_out(const scene_quality *q) {
     return q->effective_area && q->buckets && q->zones;
 }

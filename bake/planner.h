@@ -30,8 +30,6 @@ void plan_free(plan *p);
 
 /* What radius "auto" is, m, if a frame stores so many photons (> 0). Until that has been measured the plan assumes all slots. */
 double plan_radius(const plan *p, double stored);
-/* Changes the radius; the baked photons' powers follow. */
-void plan_set_radius(plan *p, double radius, vit_photon *baked);
 
 /* A cluster's buckets hold photons of all zones that any of its samples accepts, a sample's area is that of its own zones: divided by
  * one another they are no irradiance. So quality.effective_area does nothing with both. */

@@ -63,12 +63,19 @@ static inline void photon_numbers(lu path, uint hit_number, lf *u, lf *v)
     *v = l_unit_float(path * photon_alpha[k + 1u] + l_pcg(L_U(shift + 2u)));
 }
 
-/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
-static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, float radius, lu zone)
+/* Of photons that land `way` metres from the surface that reflected them; facing: how that and this surface face each other. */
+static inline lf photon_radius(float radius, lf way, lf facing)
 {
-    float v[12 * VIT_LANES];
+    lf near = l_div(way * VIT_PHOTON_NEAR, l_max(facing, L_F(1e-6f)));
+    return l_min(L_F(radius), l_max(near, L_F(VIT_PHOTON_LEAST * radius)));
+}
+
+/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
+static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, lf radius, lu zone)
+{
+    float v[11 * VIT_LANES];
     uint zones[VIT_LANES];
-    float r2 = radius * radius, inv = vit_div(1.0f, r2), scale = 2.0f * VIT_INV_PI * inv;
+    lf r2 = radius * radius, inv = l_div(1.0f, r2), scale = inv * (2.0f * VIT_INV_PI);
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     p = lv3_sel(valid, p, zero);
     d = lv3_sel(valid, d, zero);
@@ -82,7 +89,8 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
     L_STORE(power.x * scale, v + 6 * VIT_LANES);
     L_STORE(power.y * scale, v + 7 * VIT_LANES);
     L_STORE(power.z * scale, v + 8 * VIT_LANES);
-    L_STORE(l_sel(valid, L_F(r2), L_F(-1)), v + 9 * VIT_LANES);
+    L_STORE(l_sel(valid, r2, L_F(-1)), v + 9 * VIT_LANES);
+    L_STORE(inv, v + 10 * VIT_LANES);
     L_STORE(l_sel_u(valid, zone, L_U(0)), zones);
     for (int i = 0; i < VIT_LANES; i++) {
         global vit_photon *q = photons + slot + i;
@@ -93,7 +101,7 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
         q->direction[0] = v[3 * VIT_LANES + i];
         q->direction[1] = v[4 * VIT_LANES + i];
         q->direction[2] = v[5 * VIT_LANES + i];
-        q->inv_radius2 = inv;
+        q->inv_radius2 = v[10 * VIT_LANES + i];
         q->power[0] = v[6 * VIT_LANES + i];
         q->power[1] = v[7 * VIT_LANES + i];
         q->power[2] = v[8 * VIT_LANES + i];
@@ -115,7 +123,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             break;
     lu path = L_U(first) + L_AS_UINT(L_INDEX);
     li alive = L_I(0);
-    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o;
+    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o, from = o; /* from: normal of the matt surface that the photon comes from; 0: of none */
     if (light < lights + (size_t)(frame + 1) * scene->lights) {
         lf weight;
         d = photon_emission(light, path, &o, &weight);
@@ -158,7 +166,8 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
                 cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
                 zone = cell_zone(cells, &cell);
             }
-            photon_store(photons, (hit_number - 1) * paths + first, matt, s.position, d, power, scene->radius, zone);
+            lf radius = l_sel(matt, photon_radius(scene->radius, t, -lv3_dot(from, s.face)), L_F(scene->radius));
+            photon_store(photons, (hit_number - 1) * paths + first, matt, s.position, d, power, radius, zone);
             stored += popcount(l_bits(matt));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
@@ -170,8 +179,9 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         photon_numbers(path, hit_number, &u, &v);
         next = photon_bounce(s.face, u, v);
         o = s.position;
+        from = lv3_sel(matt, s.face, lv3_set(L_F(0), L_F(0), L_F(0)));
         if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) {
-            lv3 from = o, on = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular;
+            lv3 start = o, on = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular;
             li glass = alive & ~matt & L_NE(s.shine.kind, L_I((int)VIT_MIRROR));
             if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
                 li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
@@ -179,11 +189,11 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
                 li through = glass & L_GE(u, p.mirror);
                 power = lv3_sel(inside, shine_left(power, s.shine.absorption, t), power);
                 on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
-                from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
+                start = lv3_sel(through, lv3_along(start, s.face, L_F(-2.0f * scene->ray_offset)), start);
                 tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
             }
             next = lv3_sel(matt, next, on);
-            o = lv3_sel(matt, o, from);
+            o = lv3_sel(matt, o, start);
             reflectance = lv3_sel(matt, reflectance, tint);
         }
         power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z);

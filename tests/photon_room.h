@@ -190,8 +190,8 @@ static inline void room_drop(room *r) {
 }
 
 /* Incident power of a photon in a channel, W. */
-static inline double room_watts(const room *r, const vit_photon *p, int channel) {
-    return (double)p->power[channel] * 3.14159265358979 * (double)r->in.radius * (double)r->in.radius / 2.0;
+static inline double room_watts(const vit_photon *p, int channel) {
+    return (double)p->power[channel] * 3.14159265358979 * (double)p->radius2 / 2.0;
 }
 
 /* The wall from which the photon came in a closed, empty room, and the place there. */
