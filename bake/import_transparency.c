@@ -11,11 +11,13 @@
 enum { DEEPEST = 256 }; /* of the node tree; import.c refuses deeper ones */
 #define NEARLY_ALL 0.9  /* of a file's triangles: nobody exports a model to hide so much of it */
 
-/* Opacity as the file has it. */
+/* Opacity as the file has it. A 0 beside an opacity texture says nothing, since nobody maps what is invisible: the texture is
+ * meant. */
 static float stated_opacity(const struct aiMaterial *ai) {
     float alpha = 1.0f;
     (void)import_floats(ai, AI_MATKEY_OPACITY, &alpha, 1);
-    return import_clamp(alpha, 1.0f);
+    alpha = import_clamp(alpha, 1.0f);
+    return alpha == 0.0f && aiGetMaterialTextureCount(ai, aiTextureType_OPACITY) > 0 ? 1.0f : alpha;
 }
 
 float import_opacity(const importer *im, const struct aiMaterial *ai) {

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-enum { WIDTH = 64, HEIGHT = 36 };
-#define FLOATS ((size_t)4 * WIDTH * HEIGHT)
+enum { WIDTH = 64, HEIGHT = 36, WIDE = 240, HIGH = 135 }; /* pixels; the latter as the scene file of the highlights says */
 
 /* Full path of a file of the cases; NULL, after a message, if it is not there. */
 static const char *case_file(const char *name) {
@@ -26,10 +25,10 @@ static void bake_aloud(scene_lab *l, const char *file, const char *options) {
     scene_lab_run(l, "vitrine-bake", line);
 }
 
-static double middle(scene_lab *l) {
-    static float pixels[FLOATS];
-    scene_lab_play(l, "final", pixels, FLOATS);
-    return (double)pixels[4 * (HEIGHT / 2 * WIDTH + WIDTH / 2)];
+static double middle(scene_lab *l, int width, int height) {
+    static float pixels[4 * WIDE * HIGH];
+    scene_lab_play(l, "final", pixels, (size_t)4 * (size_t)width * (size_t)height);
+    return (double)pixels[4 * (height / 2 * width + width / 2)];
 }
 
 /* 5435.14 cd are 7.96 W/sr, two metres over a floor of 0.5: 7.96 * 0.5 / pi / 4 = 0.317. */
@@ -39,7 +38,7 @@ static void candela_of_a_blender_lamp(void **state) {
         skip();
     bake_aloud(*state, file, "");
     assert_true(scene_lab_said(*state, "light 'Lamp': 5435.14 cd = 7.96 W/sr"));
-    assert_true(fabs(middle(*state) / 0.317 - 1.0) < 0.01);
+    assert_true(fabs(middle(*state, WIDTH, HEIGHT) / 0.317 - 1.0) < 0.01);
 }
 
 /* A floor of 0.8, with and without two more materials. */
@@ -49,9 +48,9 @@ static void blenders_default_highlight(void **state) {
         const char *file = case_file(i ? "obj-default-ks/m3.cfg" : "obj-default-ks/m1.cfg");
         if (!file)
             skip();
-        bake_aloud(*state, file, "--size 64x36");
+        bake_aloud(*state, file, "");
         assert_true(scene_lab_said(*state, "Ks 0.5, Ns 250: Blender"));
-        floor[i] = middle(*state);
+        floor[i] = middle(*state, WIDE, HIGH);
     }
     assert_true(fabs(floor[0] / 0.1152 - 1.0) < 0.01 && fabs(floor[1] / floor[0] - 1.0) < 0.001);
 }
@@ -62,7 +61,7 @@ static void a_transparency_of_0(void **state) {
         skip();
     bake_aloud(*state, file, "--frames 1 --size 64x36 --photons 0");
     assert_true(scene_lab_said(*state, "warning: ") && scene_lab_said(*state, "'cutoff' of a material"));
-    assert_true(middle(*state) > 0.2); /* lit to show as 0.5, not the background's 0.1 */
+    assert_true(middle(*state, WIDTH, HEIGHT) > 0.2); /* lit to show as 0.5, not the background's 0.1 */
 }
 
 static void an_orthographic_camera(void **state) {

@@ -113,6 +113,21 @@ static void no_file_vanishes_for_its_transparency(void **state) {
     }
 }
 
+/* The texture is left out, with a warning, if it is not the colour's own. */
+static void a_mapped_opacity_of_0_is_its_map(void **state) {
+    model m;
+    vit_text why = {""};
+    char names[4];
+    (void)state;
+    put_obj("d 1", "d 0\nmap_d mask.png", "d 0");
+    if (import_file("m.obj", "", &m, &why) != VIT_OK)
+        fail_msg("%s", why.text);
+    kept(&m, names);
+    assert_string_equal(names, "ab");
+    assert_non_null(strstr(warnings, "opacity texture 'mask.png' is not the colour texture"));
+    model_free(&m);
+}
+
 /* All of it by the user's own wish. */
 static void a_scene_file_that_hides_everything_is_refused_with_the_cure(void **state) {
     model m;
@@ -130,7 +145,7 @@ static void a_scene_file_that_hides_everything_is_refused_with_the_cure(void **s
 /* A COLLADA file of materials "a" and "b", a triangle each, with these lines about their transparency. */
 #define EFFECT(id)                                                                                                             \
     "<effect id=\"E" id "\"><profile_COMMON><technique sid=\"t\"><lambert><diffuse><color>0.5 0.5 0.5 "                        \
-                        "1</color></diffuse>%s</lambert></technique></profile_COMMON></effect>"
+    "1</color></diffuse>%s</lambert></technique></profile_COMMON></effect>"
 #define TRIANGLE(name)                                                                                                         \
     "<triangles count=\"1\" material=\"" name                                                                                  \
     "\"><input semantic=\"VERTEX\" source=\"#V\" offset=\"0\"/><p>0 1 2</p></triangles>"
@@ -191,6 +206,7 @@ static int make_folder(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_file_vanishes_for_its_transparency),
+        cmocka_unit_test(a_mapped_opacity_of_0_is_its_map),
         cmocka_unit_test(a_scene_file_that_hides_everything_is_refused_with_the_cure),
         cmocka_unit_test(a_collada_transparency_of_0_is_opaque),
     };
