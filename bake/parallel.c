@@ -3,23 +3,24 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-#define CHUNK 64u /* items that a thread takes at a time */
+#define MOST_CHUNK 64u /* items that a thread takes at a time; fewer where that would leave threads idle */
+#define CHUNKS 16u     /* a thread takes, at least */
 #define MAX_THREADS 256u
 
 typedef struct work {
     void (*run)(void *user, uint32_t item);
     void *user;
-    uint32_t items;
+    uint32_t items, chunk;
     atomic_uint next; /* chunk */
 } work;
 
 static void *worker(void *user) {
     work *w = user;
     for (;;) {
-        const uint64_t first = (uint64_t)atomic_fetch_add(&w->next, 1) * CHUNK;
-        for (uint64_t i = first; i < first + CHUNK && i < w->items; i++)
+        const uint64_t first = (uint64_t)atomic_fetch_add(&w->next, 1) * w->chunk;
+        for (uint64_t i = first; i < first + w->chunk && i < w->items; i++)
             w->run(w->user, (uint32_t)i);
-        if (first + CHUNK >= w->items)
+        if (first + w->chunk >= w->items)
             return NULL;
     }
 }
@@ -31,6 +32,8 @@ void parallel_for(unsigned threads, uint32_t items, void (*run)(void *user, uint
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     if (threads == 0)
         threads = cores > 0 ? (unsigned)cores : 1;
+    w.chunk = items / threads / CHUNKS;
+    w.chunk = w.chunk < 1 ? 1 : w.chunk > MOST_CHUNK ? MOST_CHUNK : w.chunk;
     while (started + 1 < threads && started < MAX_THREADS && pthread_create(pool + started, NULL, worker, &w) == 0)
         started++;
     worker(&w);

@@ -25,8 +25,8 @@ typedef struct reach {
 typedef void reach_progress_fn(void *user, double done);
 
 /* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames, the model's
- * area lights and, if `sky_light`, light from all round. Without any light or matt surface nothing is flagged. The result does not depend on
- * `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory, or Embree fails. */
+ * area lights and, if `sky_light`, light from all round. Without any light or matt surface nothing is flagged. The result does
+ * not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory, or Embree fails. */
 vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
                             reach_progress_fn *progress, void *user, reach *out, vit_text *why);
 

@@ -7,9 +7,11 @@
 #if VIT_EMBREE == 4
 #include <embree4/rtcore.h>
 typedef struct RTCRayQueryContext embree_context;
+#define ASKED_FILTER RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS /* a filter for the rays that ask for one */
 #else
 #include <embree3/rtcore.h>
 typedef struct RTCIntersectContext embree_context;
+#define ASKED_FILTER RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
 #endif
 
 #define INSET 4.0f    /* ray offsets that starting points keep from a triangle's edges, if it is large enough */
@@ -43,9 +45,17 @@ static uint32_t hash(uint32_t x) { /* PCG (O'Neill 2014), as the kernels' */
 }
 
 /* The four-dimensional R sequence (Roberts 2018), shifted by a hash. */
-float sequence(uint32_t stream, uint32_t i, uint32_t d) {
+static float shifted(uint32_t shift, uint32_t i, uint32_t d) {
     static const uint32_t alpha[4] = {0xdb4f0b91u, 0xbbe05633u, 0xa0f2ec75u, 0x89e18285u}; /* 2^32 / phi4^(d + 1) */
-    return (float)((hash(stream * 4u + d) + (i + 1u) * alpha[d]) >> 8) * 0x1p-24f;
+    return (float)((shift + (i + 1u) * alpha[d]) >> 8) * 0x1p-24f;
+}
+
+float sequence(uint32_t stream, uint32_t i, uint32_t d) {
+    return shifted(hash(stream * 4u + d), i, d);
+}
+
+float side_sequence(const ray_side *s, uint32_t i, uint32_t d) {
+    return shifted(s->shift[d], i, d);
 }
 
 double triangle_area(const vit_triangle *t) {
@@ -75,20 +85,31 @@ static float distance(const float a[3], const float b[3]) {
     return sqrtf(dot(d, d));
 }
 
-vec side_point(const geometry *g, uint32_t side, float u, float v) {
+ray_side side_of(const geometry *g, uint32_t side) {
     const vit_triangle *t = g->triangles + side / 2;
-    const float inset = INSET * g->ray_offset, twice_area = (float)(2.0 * triangle_area(t)), root = sqrtf(u);
-    const float random[3] = {1.0f - root, root * (1.0f - v), root * v};
+    const float inset = INSET * g->ray_offset, twice_area = (float)(2.0 * triangle_area(t));
     const float edge[3] = {distance(t->v1, t->v2), distance(t->v2, t->v0), distance(t->v0, t->v1)};
-    float margin[3], rest = 1.0f; /* barycentric: a share of the height above each edge */
-    for (int k = 0; k < 3; k++) {
-        margin[k] = fminf(0.25f, inset * edge[k] / twice_area);
-        rest -= margin[k];
+    const vec corner[3] = {vec_of(t->v0), vec_of(t->v1), vec_of(t->v2)};
+    ray_side s = {.normal = side_normal(g, side)};
+    float rest = 1.0f;
+    for (uint32_t k = 0; k < 4; k++)
+        s.shift[k] = hash(side * 4u + k);
+    for (int k = 0; k < 3; k++) { /* barycentric: a share of the height above each edge */
+        const float margin = fminf(0.25f, inset * edge[k] / twice_area);
+        s.corner = scaled_sum(s.corner, margin, corner[k]);
+        rest -= margin;
     }
-    vec p = scaled_sum((vec){0.0f, 0.0f, 0.0f}, margin[0] + rest * random[0], vec_of(t->v0));
-    p = scaled_sum(p, margin[1] + rest * random[1], vec_of(t->v1));
-    p = scaled_sum(p, margin[2] + rest * random[2], vec_of(t->v2));
-    return scaled_sum(p, g->ray_offset, side_normal(g, side));
+    s.corner = scaled_sum(scaled_sum(s.corner, rest, corner[0]), g->ray_offset, s.normal);
+    for (int k = 0; k < 2; k++) {
+        const vec along = scaled_sum(corner[k + 1], -1.0f, corner[0]);
+        s.along[k] = (vec){rest * along.x, rest * along.y, rest * along.z};
+    }
+    return s;
+}
+
+vec side_point(const ray_side *s, float u, float v) {
+    const float root = sqrtf(u);
+    return scaled_sum(scaled_sum(s->corner, root * (1.0f - v), s->along[0]), root * v, s->along[1]);
 }
 
 vec cosine_direction(vec n, float u, float v) {
@@ -125,7 +146,9 @@ static bool add_triangles(const model *m, ray_scene *s) {
             index[3 * i + k] = 3 * i + (hole ? 0 : k);
     }
     if (index) {
-        rtcSetGeometryIntersectFilterFunction(mesh, skip_one);
+#if VIT_EMBREE == 4
+        rtcSetGeometryEnableFilterFunctionFromArguments(mesh, true);
+#endif
         rtcCommitGeometry(mesh);
         rtcAttachGeometry(s->scene, mesh);
         rtcCommitScene(s->scene);
@@ -137,12 +160,14 @@ static bool add_triangles(const model *m, ray_scene *s) {
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out) {
     char config[32];
     snprintf(config, sizeof config, "threads=%u", threads);
-    *out = (ray_scene){.g = g, .m = m, .device = rtcNewDevice(config)};
+    *out = (ray_scene){.g = g, .m = m, .matt = true, .device = rtcNewDevice(config)};
+    for (int i = 0; i < m->material_count; i++)
+        out->matt &= m->materials[i].kind == VIT_MATTE;
     if (!out->device)
         return false;
     out->scene = rtcNewScene(out->device);
     if (out->scene)
-        rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST | ASKED_FILTER);
     if (out->scene && add_triangles(m, out))
         return true;
     ray_scene_close(out);
@@ -173,9 +198,11 @@ static uint32_t cast_but(const ray_scene *s, uint32_t skip, vec origin, vec dire
     rtcInitIntersectArguments(&arguments);
     rtcInitRayQueryContext(&q.context);
     arguments.context = &q.context;
+    arguments.filter = skip != RAY_NOTHING ? skip_one : NULL;
     rtcIntersect1(s->scene, &r, &arguments);
 #else
     rtcInitIntersectContext(&q.context);
+    q.context.filter = skip != RAY_NOTHING ? skip_one : NULL;
     rtcIntersect1(s->scene, &q.context, &r);
 #endif
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
@@ -185,6 +212,25 @@ static uint32_t cast_but(const ray_scene *s, uint32_t skip, vec origin, vec dire
     if (fabsf(cosine) < GRAZING || fminf(r.hit.u, fminf(r.hit.v, 1.0f - r.hit.u - r.hit.v)) < EDGE)
         return RAY_UNSURE;
     return 2 * r.hit.primID + (cosine > 0.0f);
+}
+
+static bool is_occluded(const ray_scene *s, vec origin, vec direction, float distance) {
+    struct RTCRay r = {.org_x = origin.x,
+                       .org_y = origin.y,
+                       .org_z = origin.z,
+                       .dir_x = direction.x,
+                       .dir_y = direction.y,
+                       .dir_z = direction.z,
+                       .tfar = distance,
+                       .mask = ~0u};
+#if VIT_EMBREE == 4
+    rtcOccluded1(s->scene, &r, NULL);
+#else
+    embree_context context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(s->scene, &context, &r);
+#endif
+    return r.tfar < 0.0f;
 }
 
 uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance) {
@@ -205,6 +251,8 @@ static vec sent_on(const model_material *m, vec d, vec n, bool back, float chanc
 
 uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_t chance, float *distance) {
     float whole = 0.0f, way = *distance;
+    if (s->matt)
+        return ray_scene_cast(s, origin, direction, distance);
     for (uint32_t i = 0; i < LONGEST; i++) {
         const uint32_t side = ray_scene_cast(s, origin, direction, &way);
         const bool found = side < 2 * s->m->triangles;
@@ -225,6 +273,8 @@ uint32_t ray_scene_follow(const ray_scene *s, vec origin, vec direction, uint32_
 }
 
 bool ray_scene_passes(const ray_scene *s, vec p, vec direction, float distance) {
+    if (s->matt)
+        return !is_occluded(s, p, direction, distance);
     for (uint32_t i = 0; i < LONGEST; i++) {
         float way = distance;
         const uint32_t side = ray_scene_cast(s, p, direction, &way);

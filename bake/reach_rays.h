@@ -17,7 +17,15 @@ typedef struct ray_scene {
     struct RTCSceneTy *scene;
     const geometry *g;
     const model *m;
+    bool matt; /* all of it: what a ray finds first is where it ends */
 } ray_scene;
+
+/* What all rays of a side begin with. */
+typedef struct ray_side {
+    vec corner, along[2]; /* of the triangle within the inset, g->ray_offset above the side */
+    vec normal;           /* unit */
+    uint32_t shift[4];    /* of the side's own sequence */
+} ray_side;
 
 /* Rays pass cut-out triangles as if they were not there. False: Embree fails; there is nothing to close. */
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out);
@@ -38,10 +46,13 @@ bool ray_scene_covered(const ray_scene *s, uint32_t side, vec p);
 float sequence(uint32_t stream, uint32_t i, uint32_t d);
 double triangle_area(const vit_triangle *t);
 vec side_normal(const geometry *g, uint32_t side);
+ray_side side_of(const geometry *g, uint32_t side);
+/* sequence() of the side as stream. */
+float side_sequence(const ray_side *s, uint32_t i, uint32_t d);
 const model_material *side_material(const model *m, const geometry *g, uint32_t side);
 bool material_lights(const model_material *m); /* its triangles are area lights */
 /* A point of the side for 0 <= u, v < 1, g->ray_offset above it. */
-vec side_point(const geometry *g, uint32_t side, float u, float v);
+vec side_point(const ray_side *s, float u, float v);
 /* A direction of a cosine distribution about n. */
 vec cosine_direction(vec n, float u, float v);
 
