@@ -19,9 +19,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#define LEAST_LIGHT_RAYS (1u << 18) /* of step 1: one a side between these */
+#define LEAST_LIGHT_RAYS (1u << 18) /* of step 1: two a side between these */
 #define MOST_LIGHT_RAYS (1u << 20)
-#define LEAST_GATHERED 6u /* rays a side in step 2, between these and so that they are GATHERED in all */
+#define LEAST_GATHERED 5u /* rays a side in step 2, between these and so that they are GATHERED in all */
 #define MOST_GATHERED 16u
 #define GATHERED (1u << 20)
 #define GATHERED_BY_AREA (1u << 17) /* and so many by area: what large sides give lights much */
@@ -235,7 +235,7 @@ vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bo
     const double start = seconds();
     *out = (reach){0};
     reach_search s = {.g = g, .m = m, .sides = 2 * m->triangles};
-    s.light_rays = between(LEAST_LIGHT_RAYS, s.sides, MOST_LIGHT_RAYS);
+    s.light_rays = between(LEAST_LIGHT_RAYS, 2 * (uint64_t)s.sides, MOST_LIGHT_RAYS);
     s.gathered = between(LEAST_GATHERED, GATHERED / s.sides, MOST_GATHERED);
     const bool fine = prepare(&s, t, frames, sky_light);
     vit_status status = VIT_OK;

@@ -11,7 +11,7 @@
 
 #define ASK_LIGHTS 16u
 #define ASK_RAYS 96u
-#define FIRST_LIGHTS 2u /* of each side by itself: light that comes straight is the sharpest, and cheap to ask for */
+#define FIRST_LIGHTS 4u /* of each side by itself: light that comes straight is the sharpest, and cheap to ask for */
 #define LARGE 8192.0    /* a side of more than 1 / LARGE of the whole surface asks by itself, */
 #define LARGER 2048.0   /* of more than 1 / LARGER as many times the rays */
 

@@ -165,8 +165,8 @@ static inline csv csv_open(const char *name) {
     return c;
 }
 
-static inline void csv_row(csv *c, const char *scene, const char *size, const char *what, const series *s, const char *unit) {
-    const char *const texts[] = {c->date, c->cpu, c->device.text, scene, size, what};
+static inline void csv_row(csv *c, const char *of, const char *size, const char *what, const series *s, const char *unit) {
+    const char *const texts[] = {c->date, c->cpu, c->device.text, of, size, what};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         csv_field(c->file, texts[i]);
     fprintf(c->file, "%.9g,%.4g,%s,%d\n", series_median(s), series_mad(s), unit, s->count);

@@ -290,6 +290,25 @@ static void a_spot_light_lights_only_its_cone(void **state) {
     }
 }
 
+/* Rays, not seconds: boxes in a closed box; 112 rays a side would tell the same. */
+static void insides_of_bodies_cost_few_rays(void **state) {
+    (void)state;
+    fixture *f = make();
+    add_box(f, ROOM, 1);
+    const uint32_t housing = add_box(f, (const float[]){-2, 1, -2}, (const float[]){2, 3, 2}, 8), parts = f->m.triangles;
+    for (int i = 0; i < 80; i++) {
+        const float x = 0.35f * (float)(i % 10) - 1.8f, z = 0.45f * (float)(i / 10) - 1.8f;
+        add_box(f, (const float[]){x, 1.5f, z}, (const float[]){x + 0.3f, 2, z + 0.3f}, 5);
+    }
+    add_light(f, 4, 4, 4);
+    search(f, 2);
+    expect(f, housing, parts - housing, VIT_SIDE_DARK_BACK);
+    expect(f, parts, f->m.triangles - parts, VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
+    const uint64_t sides = 2 * (uint64_t)f->m.triangles, of_lights = 1u << 18;
+    assert_true(f->r.rays > of_lights && f->r.rays < of_lights + 40 * sides);
+    drop(f);
+}
+
 static void without_light_nothing_is_flagged(void **state) {
     (void)state;
     fixture *f = make();
@@ -481,6 +500,7 @@ int main(void) {
         cmocka_unit_test(light_passes_the_holes_of_a_cut_out),
         cmocka_unit_test(a_room_that_the_light_visits_for_one_frame_is_lit),
         cmocka_unit_test(a_spot_light_lights_only_its_cone),
+        cmocka_unit_test(insides_of_bodies_cost_few_rays),
         cmocka_unit_test(without_light_nothing_is_flagged),
         cmocka_unit_test(one_thread_and_two_flag_the_same_sides),
         cmocka_unit_test(light_goes_the_mean_chord_of_a_cube),
