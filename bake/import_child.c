@@ -94,24 +94,25 @@ static void send_warning(void *user, const char *line) {
 }
 
 /* Starts with an empty model, but for the images: those that are there already are not read again. */
-__attribute__((noreturn)) static void read_and_leave(importer *im, const scene_mesh *mesh, int to) {
+__attribute__((noreturn)) static void read_and_leave(const importer *of_parent, const scene_mesh *mesh, int to) {
     wire out = {.fd = to};
-    model fresh = {.images = im->m->images, .image_count = im->m->image_count};
+    model fresh = {.images = of_parent->m->images, .image_count = of_parent->m->image_count};
+    importer im = *of_parent;
     be_silent();
     die_by_signals();
     limit(RLIMIT_CORE, 0);
-    im->mapped = mapped_now();
-    im->to_parent = &out;
-    im->m = &fresh;
-    im->vertex_room = im->triangle_room = im->material_room = 0;
-    im->user = im->warn ? &out : NULL;
-    im->warn = im->warn ? send_warning : NULL;
+    im.mapped = mapped_now();
+    im.to_parent = &out;
+    im.m = &fresh;
+    im.vertex_room = im.triangle_room = im.material_room = 0;
+    im.user = im.warn ? &out : NULL;
+    im.warn = im.warn ? send_warning : NULL;
     const int before = fresh.image_count;
-    set_limits(im);
-    if (import_file(im, mesh))
-        wire_send_model(im, before, &out);
+    set_limits(&im);
+    if (import_file(&im, mesh))
+        wire_send_model(&im, before, &out);
     else
-        wire_send(&out, WIRE_FAILURE, im->why->text, strlen(im->why->text));
+        wire_send(&out, WIRE_FAILURE, im.why->text, strlen(im.why->text));
     /* The image of the process goes as a whole: what would free Assimp's tree may not survive it. */
     _exit(out.failed ? 1 : 0);
 }

@@ -33,13 +33,16 @@ void inputs_add(inputs *in, const char *path) {
     struct stat s;
     if (stat(path, &s) != 0 || find(in, &s))
         return;
-    char *copy = strdup(path);
-    if (!copy || !make_room(in)) {
-        free(copy);
-        in->lost = true;
+    in->lost = in->lost || !make_room(in);
+    if (in->lost)
         return;
-    }
-    in->files[in->count++] = (struct input_file){s.st_dev, s.st_ino, copy};
+    struct input_file *to = &in->files[in->count];
+    *to = (struct input_file){.device = s.st_dev, .inode = s.st_ino};
+    to->path = strdup(path);
+    if (to->path)
+        in->count++;
+    else
+        in->lost = true;
 }
 
 void inputs_free(inputs *in) {

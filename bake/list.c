@@ -138,36 +138,38 @@ void list_for_people(const list *l, FILE *to) {
 static void remember(void *user, const char *line) {
     list *l = user;
     char **grown = realloc(l->not_done, (l->not_done_count + 1) * sizeof *grown);
-    char *copy = strdup(line);
-    l->not_done = grown ? grown : l->not_done;
-    if (grown && copy)
-        l->not_done[l->not_done_count++] = copy;
-    else {
-        free(copy);
+    if (!grown) {
         l->failed = true;
+        return;
     }
+    l->not_done = grown;
+    grown[l->not_done_count] = strdup(line);
+    if (grown[l->not_done_count])
+        l->not_done_count++;
+    else
+        l->failed = true;
 }
 
-static void find_extensions(list *l) {
-    for (int i = 0; i < l->s->mesh_count; i++) {
-        gltf_extension found[GLTF_EXTENSIONS];
-        const int count = gltf_extensions(l->s->meshes[i].file, found);
-        list_extension *grown = count > 0 ? realloc(l->extensions, (l->extension_count + (size_t)count) * sizeof *grown) : NULL;
-        if (!grown) {
-            l->failed = l->failed || count > 0;
-            continue;
-        }
-        l->extensions = grown;
-        for (int k = 0; k < count; k++)
-            l->extensions[l->extension_count++] = (list_extension){l->s->meshes[i].file, found[k]};
+static void add_extensions(list *l, const char *file) {
+    gltf_extension found[GLTF_EXTENSIONS];
+    const int count = gltf_extensions(file, found);
+    if (count == 0)
+        return;
+    list_extension *grown = realloc(l->extensions, (l->extension_count + (size_t)count) * sizeof *grown);
+    if (!grown) {
+        l->failed = true;
+        return;
     }
+    l->extensions = grown;
+    for (int k = 0; k < count; k++)
+        grown[l->extension_count++] = (list_extension){file, found[k]};
 }
 
 vit_status list_print(const scene *s, bool strict, bool json, FILE *to, vit_text *why) {
     list l = {.s = s};
     vit_status status = model_import(s, strict, remember, &l, &l.model, why);
-    if (status == VIT_OK)
-        find_extensions(&l);
+    for (int i = 0; status == VIT_OK && i < s->mesh_count; i++)
+        add_extensions(&l, s->meshes[i].file);
     if (status == VIT_OK && l.failed) {
         (void)snprintf(why->text, sizeof why->text, "out of memory");
         status = VIT_FAILED;

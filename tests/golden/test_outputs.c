@@ -257,6 +257,26 @@ static void the_cache_keeps_what_is_no_reference(void **state) {
     (void)rmdir(FOLDER "/cache");
 }
 
+/* make-scenes reads scene files and writes others of the same names. */
+static void the_sources_of_our_scenes_are_not_written_over(void **state) {
+    (void)state;
+    if (access(VIT_BUILD_DIR "/make-scenes", X_OK) != 0)
+        skip();
+    (void)mkdir(FOLDER "/s", 0777);
+    put("s/cornell.cfg", "mine");
+    tool(&r, VIT_BUILD_DIR "/make-scenes " FOLDER "/s " FOLDER "/./s");
+    tool_refuses(&r, "make-scenes", VIT_USAGE, "which is read");
+    assert_int_equal(access(FOLDER "/s/cornell.obj", F_OK), -1);
+    assert_int_equal(link(FOLDER "/s/cornell.cfg", FOLDER "/d/atrium.obj"), 0);
+    tool(&r, VIT_BUILD_DIR "/make-scenes " FOLDER "/s " FOLDER "/d");
+    tool_refuses(&r, "make-scenes", VIT_USAGE, "which is read");
+    struct stat s;
+    assert_true(stat(FOLDER "/s/cornell.cfg", &s) == 0 && s.st_size == 4);
+    (void)unlink(FOLDER "/d/atrium.obj");
+    (void)unlink(FOLDER "/s/cornell.cfg");
+    (void)rmdir(FOLDER "/s");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_pack_is_written_over_what_it_is_made_of),
@@ -268,6 +288,7 @@ int main(void) {
         cmocka_unit_test(what_cannot_be_written_is_known_before_the_work),
         cmocka_unit_test(a_check_leaves_nothing_behind),
         cmocka_unit_test(the_cache_keeps_what_is_no_reference),
+        cmocka_unit_test(the_sources_of_our_scenes_are_not_written_over),
     };
     return cmocka_run_group_tests(tests, set_up, NULL);
 }
