@@ -198,13 +198,22 @@ static bool check_there(importer *im) {
     return trouble ? import_fail(im, "%s", trouble) : true;
 }
 
+static bool has_materials(importer *im) {
+    if (!im->no_materials[0])
+        return true;
+    if (im->strict)
+        return import_fail(im, "its material file '%.100s' is not there", im->no_materials);
+    import_warn(im, "its material file '%.100s' is not there", im->no_materials);
+    return true;
+}
+
 bool import_file(importer *im, const scene_mesh *mesh) {
     struct aiFileIO io = import_file_io(im);
     /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
     im->ai = aiImportFileEx(mesh->file, 0, &io);
     if (!im->ai)
         return fail_by_assimp(im);
-    const bool fine = import_mend_tree(im) && import_triangulate(im) && add_scene(im, mesh);
+    const bool fine = has_materials(im) && import_mend_tree(im) && import_triangulate(im) && add_scene(im, mesh);
     if (im->ai && !im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
         aiReleaseImport(im->ai);
     return fine;
@@ -232,6 +241,7 @@ static void next_file(importer *im, const char *file) {
     im->shown = SHOWN_AS_SAID;
     im->farthest = 0.0;
     im->allowed = im->allowed_texels = 0;
+    im->no_materials[0] = '\0';
     im->warned_colors = false;
     free(im->means);
     im->means = NULL;

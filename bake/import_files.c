@@ -55,11 +55,27 @@ void import_note_file(importer *im, const char *path, size_t bytes) {
     import_allow(im, bytes);
 }
 
+static const char *last_part(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Assimp goes on without a material file, without a word: the first that is nowhere is remembered. It may be tried for in more places. */
+static void note_materials(importer *im, const char *path, bool there) {
+    if (!import_has_suffix(path, ".mtl"))
+        return;
+    if (there && strcmp(im->no_materials, last_part(path)) == 0)
+        im->no_materials[0] = '\0';
+    else if (!there && !im->no_materials[0])
+        (void)snprintf(im->no_materials, sizeof im->no_materials, "%s", last_part(path));
+}
+
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
     importer *im = (importer *)(void *)io->UserData;
     size_t bytes;
     FILE *file = strpbrk(mode, "wa+") ? NULL : open_plain(path, &bytes);
     struct aiFile *f = file ? malloc(sizeof *f) : NULL;
+    note_materials(im, path, file != NULL);
     if (!f) {
         if (file)
             (void)fclose(file);

@@ -43,6 +43,7 @@ typedef struct importer {
     size_t mean_count, mean_room;
     uint64_t too_far;                   /* triangles of this file with a vertex beyond IMPORT_FAR */
     double farthest;                    /* m */
+    char no_materials[SCENE_NAME];      /* material file that is not there; "" if all are */
     uint32_t file_index;                /* in scene.meshes */
     model_mesh *placed;                 /* a mesh of the file each: places and triangles so far */
     unsigned lost_nodes;                /* that were NULL in Assimp's tree */

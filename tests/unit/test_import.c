@@ -743,6 +743,23 @@ static void a_list_with_holes_has_none_afterwards(void **state) {
     model_free(&m);
 }
 
+static void a_missing_material_file_is_a_warning_or_an_error_if_strict(void **state) {
+    model m;
+    (void)state;
+    put(FILE_OF("lost.obj"), "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl x\nf 1 2 3\n");
+    import_good(FILE_OF("lost.obj"), &m);
+    assert_int_equal(m.warnings, 1);
+    assert_non_null(strstr(last_warning, "lost.obj: its material file 'gone.mtl' is not there"));
+    model_free(&m);
+    refuse(FILE_OF("lost.obj"), true, "its material file 'gone.mtl' is not there");
+    put(FILE_OF("gone.mtl"), "newmtl x\nKd 1 1 1\n");
+    import_good(FILE_OF("lost.obj"), &m);
+    assert_int_equal(m.warnings, 0);
+    assert_true(inputs_hold(&m.files, FILE_OF("gone.mtl")));
+    model_free(&m);
+    assert_int_equal(unlink(FILE_OF("gone.mtl")), 0);
+}
+
 static void files_of_no_known_kind_are_refused(void **state) {
     (void)state;
     put(FILE_OF("a.xyz"), "hello");
@@ -922,6 +939,7 @@ int main(void) {
         T(lights_and_cameras_answer_to_the_node_above),
         T(a_file_without_a_triangle_is_refused),
         T(a_missing_mesh_is_refused),
+        T(a_missing_material_file_is_a_warning_or_an_error_if_strict),
         T(files_of_no_known_kind_are_refused),
         T(a_polygon_with_a_bad_index_is_dropped_with_a_warning),
         T(a_face_without_corners_beside_a_triangle_is_left_out),
