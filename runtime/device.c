@@ -19,7 +19,7 @@ static int vit_opencl_is(uint32_t index, int gpu) {
 
 const char *vit_device_name(uint32_t index, vit_text *why) {
     static const char unnamed[] = "";
-    vit_text unused;
+    vit_text unused = {""};
     const char *name = index == VIT_DEVICE_HOST ? vit_host_name(why ? why : &unused) : vit_opencl_name(index, why ? why : &unused);
     return name && !why ? unnamed : name;
 }
@@ -84,7 +84,7 @@ static int number(const char *text, uint32_t *out) {
 }
 
 vit_status vit_device_find(const char *name, uint32_t *index, vit_text *why) {
-    vit_text text, first, unused;
+    vit_text text, first, unused = {""};
     int best = 0, unlike = 0; /* devices that fit as well as the first, and are called otherwise */
     why = why ? why : &unused;
     *index = VIT_DEVICE_HOST;

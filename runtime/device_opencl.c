@@ -108,7 +108,7 @@ static vit_status refuse_group(const char *what, uint32_t asked, uint32_t most, 
 int vit_opencl_is(uint32_t index, int gpu) {
     cl_device_id id;
     cl_device_type type = 0;
-    vit_text unused;
+    vit_text unused = {""};
     if (find(index, &id, &unused) == VIT_OK)
         clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
     return (type & (gpu ? CL_DEVICE_TYPE_GPU : CL_DEVICE_TYPE_CPU)) != 0;

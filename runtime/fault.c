@@ -40,7 +40,7 @@ static void add_hosts(const vit *v, vit_fault *out, uint32_t *count, int *lost) 
 }
 
 vit_status vit_faults(vit *v, vit_fault out[VIT_MAX_FAULTS], uint32_t *count, int *lost, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     uint32_t words[VIT_FAULT_WORDS];
     vit_status status = VIT_OK;

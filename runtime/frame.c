@@ -63,7 +63,7 @@ static vit_status check_index(const vit *v, uint32_t index, vit_text *why) {
 }
 
 vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     vit_status status = check_index(v, index, why);
     if (status == VIT_OK && framebuffer && stride < (size_t)v->pack.scene->width * vit_format_bytes(v->limits.format)) {
@@ -113,7 +113,7 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
 }
 
 vit_status vit_trace(vit *v, uint32_t index, void *scratch, size_t scratch_size, vit_trace_fn *pass, void *user, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     trace t = {scratch, scratch_size, pass, user};
     vit_status status = check_index(v, index, why);

@@ -119,7 +119,7 @@ static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits 
 }
 
 vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     vit_pack pack;
     vit_limits l;
@@ -172,7 +172,7 @@ static vit_status warm_up(vit *v, vit_text *why) {
 }
 
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     vit_pack pack;
     vit_limits l;

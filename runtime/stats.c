@@ -5,7 +5,7 @@
 #include <string.h>
 
 vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     const uint64_t bytes = vit_buffer_bytes(B_reached, v->pack.scene, &v->limits);
     if (bytes == 0 || bytes != (uint64_t)count * sizeof *words) {
@@ -16,7 +16,7 @@ vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why) {
 }
 
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
-    vit_text unused;
+    vit_text unused = {""};
     why = why ? why : &unused;
     uint32_t counters[3 * VIT_COUNTER_COUNT], work[VIT_WORK_WORDS];
     const uint32_t *total = counters + VIT_COUNTER_COUNT, *c = counters + 2 * VIT_COUNTER_COUNT;

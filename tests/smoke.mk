@@ -2,7 +2,7 @@
 # nothing. Each is the very target, with less to do.
 SMOKE_BENCHES := $(BENCH:tests/bench/bench_%.c=smoke-bench/%)
 # With and without OpenCL; a file of each folder; a reader, the frame and the player of a pack; and each fuzzer for a few seconds.
-SMOKE_NO_OPENCL := HOST_ISAS=baseline HOST_LANES=8
+SMOKE_NO_OPENCL := config=debug HOST_ISAS=baseline HOST_LANES=8
 SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack_write.c bake/cost/front.c
 SMOKE_COVERED := unit/test_pack golden/test_no_allocation
 SMOKE_SECONDS := 5
@@ -29,9 +29,9 @@ smoke-no-opencl: $(B)/vitrine-bake $(SCENES_MADE)
 	@! $(MAKE) --no-print-directory -n deps OPENCL=0 | grep -iE 'opencl|pocl'
 	@$(MAKE) $(SIDE_BY_SIDE) OPENCL=0 $(SMOKE_NO_OPENCL) tools
 	@$(B)/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
-	@$(B)-no-opencl/vitrine-play $(B)/smoke.vit --verify
-	@$(B)-no-opencl/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)-no-opencl/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
-	@cmp $(B)/smoke.vit $(B)-no-opencl/smoke.vit
+	@build/debug-no-opencl/vitrine-play $(B)/smoke.vit --verify
+	@build/debug-no-opencl/vitrine-bake $(B)/scenes/cornell.cfg -o build/debug-no-opencl/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
+	@cmp $(B)/smoke.vit build/debug-no-opencl/smoke.vit
 smoke-lint:
 	@$(MAKE) --no-print-directory lint LINTED="$(SMOKE_LINTED)"
 smoke-coverage:

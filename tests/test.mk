@@ -56,6 +56,7 @@ RUNS := $(addprefix run/,$(filter $(TEST_PROGRAMS),$(LONGEST)) $(filter-out $(LO
 # What became of each test is written down here; a run of `make test` that is stopped, or cannot build, comes to no total.
 RESULTS := build/results
 test: deps
+	@[ "$(OPENCL)" != 0 ] || { echo "make test: many tests are about OpenCL and its compiler; OPENCL=0 is for tools and demo" >&2; exit 2; }
 	@rm -rf $(RESULTS); mkdir -p $(RESULTS)
 	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize build-sanitized
 	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)

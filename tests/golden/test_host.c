@@ -36,7 +36,7 @@ static void without_opencl_the_player_takes_host_and_says_so(void **state) {
 static void a_device_or_instruction_set_that_there_is_not_is_refused(void **state) {
     (void)state;
     tool(&r, TOOL_PLAY " %s --device hots", test_pack("33x47"));
-    tool_refuses(&r, "vitrine-play", VIT_USAGE, "or host");
+    tool_refuses(&r, "vitrine-play", VIT_FAILED, "there is no device 'hots'");
     tool(&r, TOOL_PLAY " %s --device host --host-isa z80", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "baseline");
     tool(&r, TOOL_PLAY " %s --device host --threads 0", test_pack("33x47"));
@@ -62,7 +62,7 @@ static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state)
     }
     free(host);
     tool(&r, TOOL_BAKE " %s --quiet --device hots -o " TEST_PACKS "/host.vit", test_packs[i].input);
-    tool_refuses(&r, "vitrine-bake", VIT_USAGE, "or host");
+    tool_refuses(&r, "vitrine-bake", VIT_FAILED, "there is no device 'hots'");
 }
 
 /* PoCL keeps what it compiles: an empty folder tells that nothing was. */
