@@ -69,7 +69,7 @@ typedef enum vit_format {
     X(photons, "photons as dots over the picture")                                                                               \
     X(heat, "photons of each pixel's cluster as a heat map")                                                                     \
     X(normals, "shading normals as colours")                                                                                     \
-    X(depth, "view depth, near is bright")                                                                                       \
+    X(depth, "view depth, from bright to dark over what the path sees, in even steps of its logarithm")                                                                                       \
     X(albedo, "diffuse reflectance")
 
 typedef enum vit_view {

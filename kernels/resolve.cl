@@ -86,6 +86,37 @@ static inline lv3 cluster_heat(global const vit_scene *scene, lu key, uint max_n
     return heat_colour(l_log2(L_LOAD(count) + 1.0f) * (1.0f / 12.0f));
 }
 
+/* The least and the greatest view depth of the scene's box, metres; in front of the camera, and not more than 2^7 apart. */
+static inline void box_depths(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh, float *near,
+                              float *far)
+{
+    *near = *far = 0;
+    for (int k = 0; k < 3; k++) {
+        float axis = camera->forward[k], lo = vit_min(bvh->lo0[k], bvh->lo1[k]), hi = vit_max(bvh->hi0[k], bvh->hi1[k]);
+        *near = fma(axis, (axis > 0 ? lo : hi) - camera->eye[k], *near);
+        *far = fma(axis, (axis > 0 ? hi : lo) - camera->eye[k], *far);
+    }
+    *far = vit_max(*far, scene->slice_near * 2.0f);
+    *near = vit_min(vit_max(*near, vit_max(scene->slice_near, *far * 0x1p-7f)), *far * 0.5f);
+}
+
+/* View depth as brightness, in even steps of its logarithm: 1 for the nearest, 1/16 for the farthest, so that it is not taken for nothing.
+ * The range is what the path sees, by the depth slices in use; without them, the scene's box. */
+static inline lf depth_shade(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh, lf depth)
+{
+    lf least = L_F(scene->slice_near), octaves = L_F(vit_div((float)scene->slice_count, scene->slice_scale)), skipped = L_F(0);
+    if (VIT_EFFECT_PHOTONS)
+        skipped = L_F(vit_div((float)scene->slice_first, scene->slice_scale));
+    else {
+        float near, far;
+        box_depths(scene, camera, bvh, &near, &far);
+        least = L_F(near);
+        octaves = l_log2(L_F(vit_div(far, near)));
+    }
+    lf part = l_div(l_log2(l_div(l_max(depth, least), least)) - skipped, octaves);
+    return fma(l_min(l_max(part, L_F(0)), L_F(1)), L_F(-0.9375f), L_F(1));
+}
+
 /* The photons' colours over c, where there is a dot. */
 static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside, lv3 c, global const uint *dots, global const vit_photon *photons)
 {
@@ -110,8 +141,8 @@ static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside
     return lv3_set(L_LOAD(r), L_LOAD(g), L_LOAD(b));
 }
 
-kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *hit_triangle,
-                    global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
+kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const vit_bvh_node *bvh,
+                    global const uint *hit_triangle, global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
                     uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
                     global const uint *list_count, global const uint *dots, global const vit_photon *photons, global const uint *gloss,
                     global const float *rays, global const float *film, global const uint *edges, global uchar *framebuffer)
@@ -148,7 +179,8 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         display = 1;
     }
     if (view == VIEW_DEPTH) {
-        lf near = L_F(8.0f * scene->slice_near), shown = l_div(near, near + L_LOAD(hit_distance + first));
+        lf depth = VIT_EFFECT_CHAINS ? chain_length(rays, n, first) : L_LOAD(hit_distance + first);
+        lf shown = depth_shade(scene, cameras + frame, bvh, l_sel(hit, depth, L_F(scene->slice_near)));
         c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
         display = 1;
     }

@@ -39,6 +39,8 @@ $(B)/tests/unit/test_work_kernel.o: CFLAGS_ALL += -DVIT_CC='"$(CC)"'
 # How a program of the user's must be linked in this configuration.
 $(B)/tests/golden/test_public_header.o: CFLAGS_ALL += -DVIT_COMPILE='"$(CC) $(OPT)"' -DVIT_LIBS='"$(LIBS_RUNTIME)"'
 $(B)/tests/golden/test_public_header: $(B)/vitrine.pc
+# The player's own judgement.
+$(B)/tests/unit/test_budget_verdict: $(addprefix $(B)/runtime/play/,budget.o failure.o machine_load.o pacing.o report.o times.o)
 # It casts rays with the tests' laboratory.
 $(B)/tests/bench/bench_octree: private LIBS_COST += -lcmocka
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a

@@ -76,7 +76,31 @@ static double allowed(const budget *b, const char *pass) {
     return 0;
 }
 
-vit_status budget_check(const budget *b, unsigned percentile, const report *r, const vit_requirements *need, vit_text *why) {
+unsigned budget_percentile(unsigned asked, double others) {
+    return asked != 0 ? asked : others > BUDGET_BUSY ? 50 : 95;
+}
+
+/* Which frames the verdict is of, and how far it can be trusted. */
+static void say_noise(const budget *b, unsigned asked, unsigned percentile, double others, const report *r, vit_text *out) {
+    const times t = report_frame_times(r);
+    char over[64] = "", noisy[64] = "", load[96] = "";
+    size_t count = 0;
+    for (size_t i = 0; i < report_timed(r); i++)
+        count += r->frame_ms[i] > b->frame_ms;
+    if (b->frame_ms > 0)
+        (void)snprintf(over, sizeof over, ", %zu of %zu frames over", count, report_timed(r));
+    if (t.p95 > t.p50 * BUDGET_NOISY)
+        (void)snprintf(noisy, sizeof noisy, "; noisy: p95 is %.2f times p50", t.p95 / t.p50);
+    if (others >= 0)
+        (void)snprintf(load, sizeof load, "; other programs had %.0f %% of the processors%s", others * 100,
+                       asked == 0 && percentile == 50 ? ", so the median decides" : "");
+    (void)snprintf(out->text, sizeof out->text, "budget by %s: frame p50 %.3f, p95 %.3f, max %.3f ms%s%s%s",
+                   times_percentile_name(percentile), t.p50, t.p95, t.max, over, noisy, load);
+}
+
+vit_status budget_check(const budget *b, unsigned asked, double others, const report *r, const vit_requirements *need,
+                        vit_text *noise, vit_text *why) {
+    const unsigned percentile = budget_percentile(asked, others);
     const char *name = times_percentile_name(percentile);
     times t = report_frame_times(r);
     double frame = times_percentile(&t, percentile), longest = 0, first_ms = 0;
@@ -95,6 +119,7 @@ vit_status budget_check(const budget *b, unsigned percentile, const report *r, c
             first_ms = ms;
         }
     }
+    say_noise(b, asked, percentile, others, r, noise);
     bool frame_over = b->frame_ms > 0 && frame > b->frame_ms;
     char whole[160] = "", part[200] = "", more[40] = "";
     if (frame_over)
@@ -109,5 +134,6 @@ vit_status budget_check(const budget *b, unsigned percentile, const report *r, c
     }
     if (!frame_over && missed == 0)
         return VIT_OK;
-    return play_fail(why, VIT_BUDGET, "budget missed: %s%s%s", whole, frame_over && missed > 0 ? "; " : "", part);
+    return play_fail(why, VIT_BUDGET, "budget missed: %s%s%s (%s)", whole, frame_over && missed > 0 ? "; " : "", part,
+                     noise->text);
 }

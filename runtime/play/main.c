@@ -96,7 +96,9 @@ static bool is_timed(const play_options *o) {
 /* Devices do some of their work at the first frame only, such as compiling: where times are asked for, one frame comes before
  * them. */
 static vit_status warm_up(player *p, vit_text *why) {
-    return is_timed(p->options) ? vit_frame(p->v, p->first, p->pixels, p->need.frame_bytes / p->need.height, why) : VIT_OK;
+    return is_timed(p->options) || p->options->pace
+               ? vit_frame(p->v, p->first, p->pixels, p->need.frame_bytes / p->need.height, why)
+               : VIT_OK;
 }
 
 static void tell_note(const vit_text *note) {
@@ -131,7 +133,12 @@ static vit_status open_all(player *p, vit_text *why) {
     p->info.framebuffer = p->pixels;
     if (status == VIT_OK)
         status = open_or_fall_back(p, why);
-    p->verdict = (verdict){.compare = o->verify, .print = o->hash, .format = o->format};
+    p->verdict = (verdict){.compare = o->verify,
+                           .print = o->hash,
+                           .format = o->format,
+                           .begin = p->first,
+                           .hashes = p->hashes,
+                           .golden = p->golden};
     if (status == VIT_OK)
         status = verdict_begin(&p->verdict, p->v, p->first, p->end, why);
     if (status == VIT_OK)
@@ -175,8 +182,11 @@ static vit_status play_frames(player *p, vit_text *why) {
 /* The round of frames, and how many the sink took. */
 static vit_status play(player *p, vit_text *why) {
     vit_status status = open_all(p, why);
+    p->load = machine_load_now();
     if (status == VIT_OK)
         status = play_frames(p, why);
+    const machine_load after = machine_load_now();
+    p->others = machine_load_others(&p->load, &after);
     report_progress_clear(&p->report);
     if (p->sink_is_open) {
         vit_text late; /* the first failure is the one to tell */
@@ -219,6 +229,21 @@ static vit_status check_budgets(player *p, vit_text *why) {
     return status;
 }
 
+/* Room for hashes, and the file to compare with. */
+static vit_status check_golden(player *p, vit_text *why) {
+    const play_options *o = p->options;
+    const golden_frames frames = player_frames(p);
+    const size_t count = p->end - p->first;
+    if (o->golden != NULL || o->write_golden != NULL || o->report_file != NULL)
+        if ((p->hashes = calloc(count, sizeof *p->hashes)) == NULL)
+            return play_fail(why, VIT_FAILED, "out of memory: %zu hashes", count);
+    if (o->golden == NULL)
+        return VIT_OK;
+    if ((p->golden = calloc(count, sizeof *p->golden)) == NULL)
+        return play_fail(why, VIT_FAILED, "out of memory: %zu hashes", count);
+    return golden_read(o->golden, &frames, p->golden, why);
+}
+
 static vit_status run_pack(player *p, vit_text *why) {
     const play_options *o = p->options;
     if (o->size != NULL)
@@ -253,6 +278,8 @@ static vit_status run_pack(player *p, vit_text *why) {
     if (status == VIT_OK)
         status = check_budgets(p, why);
     if (status == VIT_OK)
+        status = check_golden(p, why);
+    if (status == VIT_OK)
         status = outputs_check(p, why);
     if (status == VIT_OK)
         status = play_and_count(p, why);
@@ -274,6 +301,8 @@ static vit_status run(const play_options *o, vit_text *why) {
     vit_status status = run_pack(&p, why);
     pack_file_unmap(&p.pack);
     work_budget_free(&p.limit);
+    free(p.hashes);
+    free(p.golden);
     return status;
 }
 
@@ -282,6 +311,7 @@ int main(int argc, char **argv) {
     play_options options;
     catch_signals();
     pocl_cache_mend_environment();
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* whole lines, also where stderr goes to the same pipe */
     vit_status status = options_parse(argc, argv, &options, &why);
     if (status == VIT_OK)
         status = run(&options, &why);

@@ -181,6 +181,14 @@ vit_status option_set_write_work_budget(play_options *o, const char *value, vit_
     return set_file(&o->write_work_budget, "write-work-budget", value, why);
 }
 
+vit_status option_set_golden(play_options *o, const char *value, vit_text *why) {
+    return set_file(&o->golden, "golden", value, why);
+}
+
+vit_status option_set_write_golden(play_options *o, const char *value, vit_text *why) {
+    return set_file(&o->write_golden, "write-golden", value, why);
+}
+
 /* Taken here, refused in main.c: the message names the pack's own size. */
 vit_status option_set_size(play_options *o, const char *value, vit_text *why) {
     (void)why;

@@ -14,8 +14,8 @@ bool option_number(const char *text, const char *end, uint32_t *out);
 
 /* VIT_USAGE: the text says what the option takes. `value` is NULL only where it may be left out. */
 typedef vit_status set_fn(play_options *o, const char *value, vit_text *why);
-set_fn option_set_out, option_set_frames, option_set_loop, option_set_view, option_set_format, option_set_lanes, option_set_group,
-    option_set_report, option_set_budget, option_set_percentile, option_set_work_budget, option_set_write_work_budget,
-    option_set_size, option_set_device, option_set_host_isa;
+set_fn option_set_out, option_set_frames, option_set_golden, option_set_write_golden, option_set_loop, option_set_view,
+    option_set_format, option_set_lanes, option_set_group, option_set_report, option_set_budget, option_set_percentile,
+    option_set_work_budget, option_set_write_work_budget, option_set_size, option_set_device, option_set_host_isa;
 
 #endif

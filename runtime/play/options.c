@@ -3,6 +3,7 @@
 #include "failure.h"
 #include <stddef.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* What a row does: sets a flag, a number within bounds, or calls `set`. */
@@ -29,6 +30,10 @@ static const option table[] = {
     WORD("loop", "N|inf", option_set_loop, "play the range N times, or until SIGTERM, which ends a loop well (default: 1)"),
     FLAG("fps", pace, "play at the pack's rate and count late frames (default: as fast as possible)"),
     FLAG("verify", verify, "compare each frame's hash with the pack's golden hash"),
+    WORD("golden", "FILE", option_set_golden,
+         "exit 4 if a frame's hash is not the file's: for pictures that are committed beside a scene"),
+    WORD("write-golden", "FILE", option_set_write_golden,
+         "write such a file: the hashes of the frames played, of any view and format"),
     FLAG("hash", hash, "print one line a frame: index and hash"),
     FLAG("trace", trace, "print one line a pass and frame: index, pass, hash of what it wrote"),
     WORD("report", "[FILE.json]", option_set_report,
@@ -36,7 +41,8 @@ static const option table[] = {
     FLAG("count-work", count_work, "count each pass's work exactly, in a round of its own; see Work"),
     WORD("budget", "MS", option_set_budget,
          "exit 3 if the frame, seen from the host, takes longer; PASS=MS for a pass; 5,resolve=1 for both"),
-    WORD("budget-percentile", "P", option_set_percentile, "which frame the budget is for: 50, 95, 99 or max (default: 95)"),
+    WORD("budget-percentile", "P", option_set_percentile,
+         "which frame the budget is for: 50, 95, 99 or max (default: 95, or 50 on a busy machine)"),
     WORD("work-budget", "FILE", option_set_work_budget, "exit 3 if a pass does more work than the file allows"),
     WORD("write-work-budget", "FILE", option_set_write_work_budget, "write such a file: the exact work of the frames played"),
     FLAG("explain", explain, "what the pack asks for: effects, passes, buffers, bytes; needs no device"),
@@ -122,6 +128,13 @@ static vit_status read_option(const char *argument, char ***next, play_options *
     return apply(row, o, value, why);
 }
 
+/* Do stdout and stderr lead to the same file or pipe (and not to nowhere)? */
+static bool has_one_end(void) {
+    struct stat out, err;
+    return fstat(STDOUT_FILENO, &out) == 0 && fstat(STDERR_FILENO, &err) == 0 && !S_ISCHR(out.st_mode) &&
+           out.st_dev == err.st_dev && out.st_ino == err.st_ino;
+}
+
 /* Options that exclude each other. */
 static vit_status check(const play_options *o, vit_text *why) {
     bool to_stdout = sink_uses_stdout(o->sink, o->target);
@@ -139,10 +152,19 @@ static vit_status check(const play_options *o, vit_text *why) {
         return play_fail(why, VIT_USAGE, "--trace plays alone: without --verify, --hash, --report, --fps and --out");
     if (o->trace && (o->report_file != NULL || o->has_budget || options_counts(o)))
         return play_fail(why, VIT_USAGE, "--trace plays alone: without --report, --count-work and budgets");
+    if (o->trace && (o->golden != NULL || o->write_golden != NULL))
+        return play_fail(why, VIT_USAGE, "--trace plays alone: without --golden and --write-golden");
+    if (o->golden != NULL && o->write_golden != NULL)
+        return play_fail(why, VIT_USAGE, "--golden and --write-golden: compare with a file or write one, not both");
     if (o->percentile != 0 && !o->has_budget)
         return play_fail(why, VIT_USAGE, "--budget-percentile needs a --budget");
     if (o->hash && to_stdout)
         return play_fail(why, VIT_USAGE, "--hash and --out %s:- both want stdout", o->sink->name);
+    if (to_stdout && !o->explain && has_one_end() && !(o->quiet && !o->report && !o->count_work))
+        return play_fail(
+            why, VIT_USAGE,
+            "--out %s:- with stdout and stderr in one file or pipe: text would be among the frames (--quiet, or 2>FILE)",
+            o->sink->name);
     if (to_stdout && !o->explain && isatty(STDOUT_FILENO))
         return play_fail(why, VIT_USAGE, "--out %s:- would fill the terminal: pipe it or name a file", o->sink->name);
     return VIT_OK;
@@ -176,8 +198,8 @@ bool options_counts(const play_options *o) {
 }
 
 bool options_plays(const play_options *o) {
-    bool asked =
-        o->out_given || o->verify || o->hash || o->report || o->report_file != NULL || o->has_budget || o->pace || o->trace;
+    bool asked = o->out_given || o->verify || o->golden != NULL || o->write_golden != NULL || o->hash || o->report ||
+                 o->report_file != NULL || o->has_budget || o->pace || o->trace;
     return asked || !options_counts(o);
 }
 
@@ -216,6 +238,8 @@ void options_help(FILE *to) {
                 "  vitrine-play scene.vit --out y4m:- | ffmpeg -i - scene.mp4\n"
                 "  vitrine-play scene.vit --out y4m:- --fps --loop inf | mpv -\n"
                 "  vitrine-play scene.vit --verify && echo the same bits\n"
+                "  vitrine-play scene.vit --write-golden scene.golden\n"
+                "  vitrine-play scene.vit --golden scene.golden --report verdict.json\n"
                 "  vitrine-play scene.vit --report --device pocl\n"
                 "  vitrine-play scene.vit --verify --device host --threads 2\n"
                 "  vitrine-play scene.vit --budget 33 --report times.json\n"

@@ -17,14 +17,15 @@ typedef struct play_options {
     vit_view view;
     vit_format format;
     uint32_t threads, lanes, group, max_nodes, max_list; /* as in vit_open_info */
-    const char *device;                                 /* as vit_device_find() takes it; NULL: the default */
-    const char *host_isa;                               /* as in vit_open_info */
-    const char *size;                                   /* not NULL: was asked for, and will be refused */
-    const char *report_file;                            /* NULL: no JSON */
-    budget budget;                                      /* with has_budget */
+    const char *device;                                  /* as vit_device_find() takes it; NULL: the default */
+    const char *host_isa;                                /* as in vit_open_info */
+    const char *size;                                    /* not NULL: was asked for, and will be refused */
+    const char *report_file;                             /* NULL: no JSON */
+    budget budget;                                       /* with has_budget */
     bool has_budget;
     unsigned percentile;                         /* 50, 95, 99 or 100 (maximum); 0: not given */
     const char *work_budget, *write_work_budget; /* NULL: not asked for */
+    const char *golden, *write_golden;           /* likewise */
     bool count_work;
     bool verify, hash, trace, pace, report, explain, list_devices, wide_divide, quiet, version, help;
 } play_options;

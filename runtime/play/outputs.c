@@ -22,7 +22,7 @@ typedef struct named_file {
     const char *option, *path;
 } named_file;
 
-enum { MOST = 4 };
+enum { MOST = 5 };
 
 static bool find_place(const char *path, place *out) {
     struct stat s;
@@ -52,6 +52,8 @@ static size_t list_inputs(const play_options *o, named_file list[MOST]) {
     list[count++] = (named_file){"", o->pack};
     if (o->work_budget != NULL)
         list[count++] = (named_file){"--work-budget", o->work_budget};
+    if (o->golden != NULL)
+        list[count++] = (named_file){"--golden", o->golden};
     return count;
 }
 
@@ -64,6 +66,8 @@ static size_t list_outputs(const play_options *o, named_file list[MOST]) {
         list[count++] = (named_file){"--report", o->report_file};
     if (o->write_work_budget != NULL)
         list[count++] = (named_file){"--write-work-budget", o->write_work_budget};
+    if (o->write_golden != NULL)
+        list[count++] = (named_file){"--write-golden", o->write_golden};
     return count;
 }
 

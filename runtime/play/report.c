@@ -118,7 +118,7 @@ void report_print(const report *r, const vit_requirements *need, const vit_stati
         (void)fprintf(to, "late frames: %" PRIu64 " of %" PRIu64 "\n", late, r->frames);
 }
 
-void report_summary(const report *r, const char *device, const char *end, FILE *to) {
+void report_closing(const report *r, const char *device, const char *end, FILE *to) {
     double seconds = (pacing_now_ms() - r->began_ms) * 1e-3;
     (void)fprintf(to, "%" PRIu64 " %s in %.2f s, %.2f ms a frame (median) on %s%s\n", r->frames,
                   r->frames == 1 ? "frame" : "frames", seconds, report_frame_times(r).p50, device, end);

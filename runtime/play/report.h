@@ -26,7 +26,8 @@ vit_status report_begin(report *r, uint64_t frames, uint32_t passes, bool progre
 vit_status report_frame(report *r, vit *v, double ms, vit_text *why);
 void report_free(report *r);
 
-/* Frame `done` of `all` (UINT64_MAX: without an end) is finished; drawn a few times a second. report_progress_clear() makes room for other text. */
+/* Frame `done` of `all` (UINT64_MAX: without an end) is finished; drawn a few times a second. report_progress_clear() makes
+ * room for other text. */
 void report_progress(report *r, uint64_t done, uint64_t all);
 void report_progress_clear(report *r);
 
@@ -38,7 +39,7 @@ times report_pass_times(const report *r, uint32_t pass);
 /* --report: time a pass, memory a buffer, work of the last frame. */
 void report_print(const report *r, const vit_requirements *need, const vit_statistics *s, uint64_t late, bool paced, FILE *to);
 /* One line: frames, seconds, milliseconds a frame, the device's name; `end` closes it. */
-void report_summary(const report *r, const char *device, const char *end, FILE *to);
+void report_closing(const report *r, const char *device, const char *end, FILE *to);
 /* One line if a bound dropped anything, else nothing. */
 void report_dropped(const vit_statistics *s, FILE *to);
 /* One line a fault of the log, if there are any. */

@@ -51,7 +51,7 @@ static void put_scene(const report_json *r, FILE *to) {
     (void)fprintf(to, "  \"scene\": {\"width\": %u, \"height\": %u, \"frames\": %u, \"fps\": %.6f, \"effects\": [", n->width,
                   n->height, n->frames, (double)n->fps);
 #define X(bit, name, macro, why)                                                                                               \
-    if (n->effects & VIT_BIT(macro)) {                                                                       \
+    if (n->effects & VIT_BIT(macro)) {                                                                                         \
         (void)fprintf(to, "%s\"%s\"", comma, name);                                                                            \
         comma = ", ";                                                                                                          \
     }
@@ -120,12 +120,25 @@ static void put_last(const vit_statistics *s, FILE *to) {
                   s->nodes, s->clusters, s->photons, s->list, s->pairs, s->largest, s->dropped_samples, s->dropped_entries);
 }
 
+static void put_verdict(const report_json *r, FILE *to) {
+    (void)fprintf(to, "  \"verdict\": {\"exit\": %d, \"verified\": %s, \"golden\": %s, ", (int)r->verdict,
+                  r->verified ? "true" : "false", r->golden ? "true" : "false");
+    put_named("text", r->verdict_text, to);
+    (void)fputs(", ", to);
+    put_named("budget", r->noise, to);
+    (void)fputs("},\n  \"hashes\": [", to);
+    for (uint64_t i = 0; i < r->hash_count; i++)
+        (void)fprintf(to, "%s\"%016" PRIx64 "\"", i > 0 ? ", " : "", r->hashes[i]);
+    (void)fputs("],\n", to);
+}
+
 static void put_all(const report_json *r, FILE *to) {
     (void)fputs("{\n  \"tool\": \"vitrine-play " VIT_VERSION "\",\n  ", to);
     put_named("pack", r->pack, to);
     (void)fputs(",\n  ", to);
     put_named("device", r->device, to);
     (void)fprintf(to, ",\n  \"lanes\": %u,\n  \"view\": \"%s\",\n  \"format\": \"%s\",\n", r->last->lanes, r->view, r->format);
+    put_verdict(r, to);
     put_scene(r, to);
     put_frames(r, to);
     put_passes(r, to);

@@ -13,6 +13,12 @@ typedef struct report_json {
     const vit_statistics *last; /* of the last frame */
     uint64_t late;
     const work_counts *work; /* NULL: not counted */
+    const uint64_t *hashes;  /* of the first `hash_count` frames of the round */
+    uint64_t hash_count;
+    bool verified, golden; /* the hashes were compared with the pack's, with a file's */
+    vit_status verdict;
+    const char *verdict_text; /* "" if all is well */
+    const char *noise;        /* what is to be known of --budget's verdict; "": nothing */
 } report_json;
 
 /* VIT_FAILED: the file cannot be written. runtime/README.md has the layout. */

@@ -15,15 +15,18 @@ vit_status verdict_begin(const verdict *d, const vit *v, uint32_t first, uint32_
 }
 
 vit_status verdict_frame(verdict *d, const vit *v, uint32_t index, const void *pixels, size_t bytes, vit_text *why) {
-    if (!d->compare && !d->print)
+    if (!d->compare && !d->print && d->hashes == NULL)
         return VIT_OK;
     uint64_t hash = vit_hash_frame(pixels, d->format, bytes);
-    if (d->compare) {
-        uint64_t golden = vit_golden(v, index);
+    if (d->hashes != NULL)
+        d->hashes[index - d->begin] = hash;
+    if (d->compare || d->golden != NULL) {
+        const uint64_t packs = d->compare ? vit_golden(v, index) : hash,
+                       files = d->golden != NULL ? d->golden[index - d->begin] : hash;
         d->checked++;
-        if (hash != golden && d->differing++ == 0) {
+        if ((hash != packs || hash != files) && d->differing++ == 0) {
             d->first = index;
-            d->expected = golden;
+            d->expected = hash != packs ? packs : files;
             d->got = hash;
         }
     }

@@ -1,4 +1,4 @@
-/* verify.c: what frames hash to: --verify, --hash, --trace. */
+/* verify.c: what frames hash to: --verify, --golden, --hash, --trace. */
 #ifndef VIT_PLAY_VERIFY_H
 #define VIT_PLAY_VERIFY_H
 
@@ -7,11 +7,14 @@
 #include <stdbool.h>
 
 typedef struct verdict {
-    bool compare, print; /* --verify, --hash */
-    vit_format format;   /* of the frames */
-    uint64_t checked;    /* frames compared with their golden hash */
-    uint64_t differing;  /* of these, not equal */
-    uint32_t first;      /* frame of the first difference */
+    bool compare, print;    /* --verify, --hash */
+    uint32_t begin;         /* first frame of the range */
+    uint64_t *hashes;       /* of the range's frames, as last played; NULL: not kept */
+    const uint64_t *golden; /* likewise, of --golden's file; NULL: not compared */
+    vit_format format;      /* of the frames */
+    uint64_t checked;       /* frames compared with a golden hash */
+    uint64_t differing;     /* of these, not equal */
+    uint32_t first;         /* frame of the first difference */
     uint64_t expected, got;
 } verdict;
 

@@ -1,84 +1,29 @@
 #include "work_budget.h"
 #include "failure.h"
+#include "line_reader.h"
 #include "sinks/output.h"
-#include <errno.h>
 #include <inttypes.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_MAX_BYTES 256
 #define HEAD "vitrine-work 1"
 
-/* A file that is being read, and the line that it is at. */
-typedef struct reader {
-    FILE *file;
-    const char *path;
-    uint32_t line;
-    char text[LINE_MAX_BYTES];
-} reader;
-
-static vit_status bad(const reader *r, vit_text *why, const char *cause) {
-    return play_fail(why, VIT_BAD_INPUT, "%s:%u: %s", r->path, r->line, cause);
-}
-
-/* The next line that says something, without its line feed. */
-static vit_status next_line(reader *r, vit_text *why) {
-    do {
-        r->line++;
-        if (fgets(r->text, sizeof r->text, r->file) == NULL)
-            return bad(r, why, ferror(r->file) ? "cannot be read" : "the file ends before the line 'end'");
-        char *feed = strchr(r->text, '\n');
-        if (feed == NULL)
-            return bad(r, why,
-                       strlen(r->text) + 1 == sizeof r->text ? "the line is too long" : "the line has no end or a zero byte");
-        *feed = '\0';
-    } while (r->text[0] == '#');
-    return VIT_OK;
-}
-
-/* A number of digits only, up to the end of `word`. */
-static bool read_u64(const char *word, uint64_t most, uint64_t *out) {
-    char *end;
-    if (word[0] == '\0' || strspn(word, "0123456789") != strlen(word))
-        return false;
-    errno = 0;
-    *out = strtoull(word, &end, 10);
-    return errno == 0 && *out <= most;
-}
-
-/* Splits at single spaces into exactly `count` words that are neither empty nor too long for a name. */
-static bool split(char *text, char **words, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        char *space = strchr(text, ' ');
-        words[i] = text;
-        if ((space == NULL) != (i + 1 == count))
-            return false;
-        if (space != NULL)
-            *space = '\0';
-        if (text[0] == '\0' || strlen(text) >= WORK_BUDGET_NAME)
-            return false;
-        text = space != NULL ? space + 1 : text;
-    }
-    return true;
-}
-
-static vit_status read_head(reader *r, work_budget *out, vit_text *why) {
+static vit_status read_head(line_reader *r, work_budget *out, vit_text *why) {
     char *words[6], *colon;
     uint64_t first, end;
-    vit_status status = next_line(r, why);
+    vit_status status = line_next(r, why);
     if (status == VIT_OK && strcmp(r->text, HEAD) != 0)
-        return bad(r, why, "not a file of work counts: the first line must be '" HEAD "'");
+        return line_bad(r, why, "not a file of work counts: the first line must be '" HEAD "'");
     if (status == VIT_OK)
-        status = next_line(r, why);
+        status = line_next(r, why);
     if (status != VIT_OK)
         return status;
-    if (!split(r->text, words, 6) || strcmp(words[0], "frames") != 0 || strcmp(words[2], "view") != 0 ||
+    if (!line_split(r->text, words, 6, WORK_BUDGET_NAME) || strcmp(words[0], "frames") != 0 || strcmp(words[2], "view") != 0 ||
         strcmp(words[4], "format") != 0 || (colon = strchr(words[1], ':')) == NULL)
-        return bad(r, why, "must be 'frames A:B view NAME format NAME'");
+        return line_bad(r, why, "must be 'frames A:B view NAME format NAME'");
     *colon = '\0';
-    if (!read_u64(words[1], UINT32_MAX, &first) || !read_u64(colon + 1, UINT32_MAX, &end) || first >= end)
-        return bad(r, why, "frames A:B must have A < B");
+    if (!line_number(words[1], UINT32_MAX, &first) || !line_number(colon + 1, UINT32_MAX, &end) || first >= end)
+        return line_bad(r, why, "frames A:B must have A < B");
     out->first = (uint32_t)first;
     out->end = (uint32_t)end;
     (void)snprintf(out->view, sizeof out->view, "%s", words[3]);
@@ -93,17 +38,18 @@ static const work_budget_row *find(const work_budget *b, const char *pass, const
     return NULL;
 }
 
-static vit_status read_row(reader *r, work_budget *out, vit_text *why) {
+static vit_status read_row(line_reader *r, work_budget *out, vit_text *why) {
     char *words[4];
     uint64_t sum, max, frames = out->end - out->first;
-    if (!split(r->text, words, 4) || !read_u64(words[2], UINT64_MAX, &sum) || !read_u64(words[3], UINT64_MAX, &max))
-        return bad(r, why, "must be 'PASS KIND SUM MAX', or 'end' on the last line");
+    if (!line_split(r->text, words, 4, WORK_BUDGET_NAME) || !line_number(words[2], UINT64_MAX, &sum) ||
+        !line_number(words[3], UINT64_MAX, &max))
+        return line_bad(r, why, "must be 'PASS KIND SUM MAX', or 'end' on the last line");
     if (max > sum || max < sum / frames) /* NOLINT(clang-analyzer-core.DivideZero): read_head() wants first < end */
-        return bad(r, why, "the maximum of a frame cannot be that, with this sum over the frames");
+        return line_bad(r, why, "the maximum of a frame cannot be that, with this sum over the frames");
     if (find(out, words[0], words[1]) != NULL)
-        return bad(r, why, "a second line of this pass and kind");
+        return line_bad(r, why, "a second line of this pass and kind");
     if (out->count == WORK_BUDGET_ROWS)
-        return bad(r, why, "too many lines");
+        return line_bad(r, why, "too many lines");
     work_budget_row *row = &out->rows[out->count++];
     (void)snprintf(row->pass, sizeof row->pass, "%s", words[0]);
     (void)snprintf(row->kind, sizeof row->kind, "%s", words[1]);
@@ -112,31 +58,28 @@ static vit_status read_row(reader *r, work_budget *out, vit_text *why) {
     return VIT_OK;
 }
 
-static vit_status read_all(reader *r, work_budget *out, vit_text *why) {
+static vit_status read_all(line_reader *r, work_budget *out, vit_text *why) {
     vit_status status = read_head(r, out, why);
     while (status == VIT_OK) {
-        status = next_line(r, why);
+        status = line_next(r, why);
         if (status == VIT_OK && strcmp(r->text, "end") == 0)
             break;
         if (status == VIT_OK)
             status = read_row(r, out, why);
     }
-    r->line++;
-    if (status == VIT_OK && fgetc(r->file) != EOF)
-        return bad(r, why, "there is more after the line 'end'");
-    return status;
+    return status == VIT_OK ? line_end(r, why) : status;
 }
 
 vit_status work_budget_read(const char *path, work_budget *out, vit_text *why) {
-    reader r = {.path = path};
+    line_reader r;
     *out = (work_budget){.path = path, .rows = calloc(WORK_BUDGET_ROWS, sizeof *out->rows)};
     if (out->rows == NULL)
         return play_fail(why, VIT_FAILED, "%s: out of memory", path);
-    r.file = fopen(path, "rb");
-    if (r.file == NULL)
-        return play_fail(why, VIT_BAD_INPUT, "%s: %s", path, strerror(errno));
-    vit_status status = read_all(&r, out, why);
-    (void)fclose(r.file);
+    vit_status status = line_open(&r, path, why);
+    if (status != VIT_OK)
+        return status;
+    status = read_all(&r, out, why);
+    line_close(&r);
     return status;
 }
 

@@ -110,12 +110,13 @@ static void a_time_budget_is_met_or_missed_with_the_pass_to_blame(void **state) 
     const char *pack = test_pack("list");
     succeeds(pack, "--budget 1000000");
     succeeds(pack, "--budget 1000000,resolve=1000000 --budget-percentile max");
-    refuses(pack, "--budget 0.000001", VIT_BUDGET, "frame p95");
+    refuses(pack, "--budget 0.000001", VIT_BUDGET, "frame p"); /* which: the machine's load decides */
+    refuses(pack, "--budget 0.000001 --budget-percentile 95", VIT_BUDGET, "frame p95");
     refuses(pack, "--budget 0.000001 --budget-percentile 50", VIT_BUDGET, "frame p50");
     refuses(pack, "--budget 0.000001 --budget-percentile max", VIT_BUDGET, "longest pass ");
-    refuses(pack, "--budget=resolve=0.000001,visibility=0.000001,1000000", VIT_BUDGET, "pass visibility p95");
-    refuses(pack, "--budget resolve=0.000001", VIT_BUDGET, "pass resolve p95");
-    refuses(pack, "--budget 0.000001,resolve=0.000001 --report " JSON, VIT_BUDGET, "; pass resolve p95");
+    refuses(pack, "--budget=resolve=0.000001,visibility=0.000001,1000000", VIT_BUDGET, "pass visibility p");
+    refuses(pack, "--budget resolve=0.000001", VIT_BUDGET, "pass resolve p");
+    refuses(pack, "--budget 0.000001,resolve=0.000001 --report " JSON, VIT_BUDGET, "; pass resolve p");
     load(JSON, file); /* a run that missed its budget still reports */
     assert_true(json_valid(file));
 }
