@@ -311,7 +311,6 @@ int main(int argc, char **argv) {
     play_options options;
     catch_signals();
     pocl_cache_mend_environment();
-    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* whole lines, also where stderr goes to the same pipe */
     vit_status status = options_parse(argc, argv, &options, &why);
     if (status == VIT_OK)
         status = run(&options, &why);
