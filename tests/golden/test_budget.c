@@ -143,23 +143,30 @@ static void a_time_budget_that_says_nothing_is_a_usage_error(void **state) {
     refuses(test_pack("list"), "--budget estimate_buckets=3", VIT_USAGE, "'estimate_buckets'");
 }
 
-/* Ways of playing that must not show in the counts. */
+/* Ways of playing that must not show in the counts; PoCL's compiler makes each width and group size anew, so that the first
+ * pack alone is counted in all of them. */
 static const struct {
     const char *environment, *options;
+    size_t packs; /* the first of them */
 } ways[] = {
-    {"", "--lanes 1"},
-    {"", "--lanes 8"},
-    {"", "--lanes 16"},
-    {"POCL_MAX_PTHREAD_COUNT=1", ""},
-    {"POCL_MAX_PTHREAD_COUNT=2", "--group 64"},
-    {"POCL_DEVICES=basic", "--lanes 1 --group 2"},
+    {"POCL_MAX_PTHREAD_COUNT=1", "", 3},
+    {"", "--device host --lanes 1", 3},
+    {"", "--device host --lanes 8 --threads 3", 3},
+    {"", "--device host --lanes 16", 3},
+    {"", "--lanes 1", 1},
+    {"", "--lanes 8", 1},
+    {"", "--lanes 16", 1},
+    {"POCL_MAX_PTHREAD_COUNT=2", "--group 64", 1},
+    {"POCL_DEVICES=basic", "--lanes 1 --group 2", 1},
 };
 
 static void files_of_counts_are_equal_however_they_are_counted(void **state) {
     (void)state;
     static const char *const packs[] = {"list", "buckets", "room"};
     for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
-        for (size_t k = 0; k < (i == 0 ? sizeof ways / sizeof ways[0] : 4); k++) {
+        for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
+            if (i >= ways[k].packs)
+                continue;
             tool(&r, "%s " TOOL_PLAY " %s --quiet --write-work-budget " WORK " %s", ways[k].environment, test_pack(packs[i]),
                  ways[k].options);
             tool_succeeds(&r);
