@@ -8,6 +8,7 @@
 
 #define ENOUGH 0.01      /* standard error of the reference's sums that is asked for */
 #define MOST_PATHS 2048u /* a pixel */
+#define FEW_PATHS 128u   /* for the share of the light that so many bounces find */
 #define SAME 1e-4        /* of a pixel: it shows what it should, but for rounding */
 #define BLACK 3e-4       /* radiance times exposure that shows as 0 or 1 of 255 */
 #define NOTICED 1e-3     /* of the picture's mean: less than that in its dark half is nothing to see */
@@ -43,27 +44,32 @@ static void tracing(void *user, double fraction) {
     progress_step(user, fraction);
 }
 
-vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why) {
+static vit_status trace(const pipeline *p, const pipeline_packed *packed, uint32_t most, check *c, vit_text *why) {
     bool *only = direct_only(p, packed->plan.scene.lights);
     if (!only) {
         snprintf(why->text, sizeof why->text, "out of memory");
         return VIT_FAILED;
     }
-    c->bounces = packed->plan.scene.bounces;
-    for (uint32_t i = 0; i < c->count; i++)
-        c->spots[i].frame = place_of(c, packed, i * c->frame_count / c->count);
     const spots_input in = {.sections = &packed->sections,
                             .direct_only = only,
                             .bounces = c->bounces,
                             .error = ENOUGH,
-                            .most = MOST_PATHS,
+                            .most = most,
                             .threads = p->threads,
                             .progress = tracing,
                             .user = p->progress};
-    progress_stage(p->progress, "check against path tracing");
     const vit_status status = spots_render(&in, c->spots, c->count, &c->paths, why);
-    progress_end(p->progress);
     free(only);
+    return status;
+}
+
+vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why) {
+    c->bounces = packed->plan.scene.bounces;
+    for (uint32_t i = 0; i < c->count; i++)
+        c->spots[i].frame = place_of(c, packed, i * c->frame_count / c->count);
+    progress_stage(p->progress, "check against path tracing");
+    const vit_status status = trace(p, packed, MOST_PATHS, c, why);
+    progress_end(p->progress);
     return status;
 }
 
@@ -127,12 +133,16 @@ static bool counts(const spot *s, const float *picture, uint32_t i) {
     return sum3(s->variance) > 0 || right > sum3(s->direct) || fabs(shown(picture, i) - right) > SAME * right;
 }
 
+static double limited_of(const spot *s, uint32_t first) {
+    return (sum3(s->limited[first]) + sum3(s->limited[first + 1])) / 2;
+}
+
 /* The darker half by one pair of sequences, measured by the other pair, both ways: which pixels are in it would otherwise
  * follow the very noise that is measured, and the reference would seem too dark. */
-static check_ratio compare_dark(const check *c, const float *picture, double mean) {
+static check_ratio compare_dark(const check *c, const float *picture, double mean, double *share) {
     ranked order[CHECK_PIXELS];
     unsigned in[CHECK_PIXELS] = {0};
-    double right = 0, seen = 0, variance = 0, pixels = 0;
+    double right = 0, limited = 0, seen = 0, variance = 0, pixels = 0;
     for (uint32_t first = 0; first < REFERENCE_SEQUENCES; first += 2) {
         uint32_t count = 0;
         for (uint32_t i = 0; i < c->count; i++)
@@ -142,6 +152,7 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
         for (uint32_t k = 0; k < (count + 1) / 2; k++) {
             const uint32_t i = order[k].spot;
             right += half_of(c->spots + i, 2 - first) / 2;
+            limited += limited_of(c->spots + i, 2 - first) / 2;
             seen += shown(picture, i) / 2;
             pixels += 0.5;
             in[i]++;
@@ -152,6 +163,7 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
     check_ratio r = ratio(seen, right, variance);
     if (fabs(seen - right) <= NOTICED * mean * pixels)
         r.value = 1;
+    *share = right > 0 ? limited / right : 1;
     return r;
 }
 
@@ -193,9 +205,30 @@ static void compare(const check *c, const float *picture, check_found *out) {
             out->flux[k].value = 1;
         out->worst = fmax(out->worst, beyond(out->flux[k]));
     }
-    out->dark = compare_dark(c, picture, sum3(right) / c->count);
+    double share;
+    out->dark = compare_dark(c, picture, sum3(right) / c->count, &share);
+    out->limited = fmin(out->limited, share);
     out->worst = fmax(out->worst, beyond(out->dark));
     look_at_brightness(c, picture, out);
+}
+
+vit_status check_share(const pipeline *p, const pipeline_packed *packed, const check *c, uint32_t bounces, double *share,
+                       vit_text *why) {
+    float black[3 * CHECK_PIXELS] = {0};
+    check *few = malloc(sizeof *few);
+    check_found found;
+    if (!few) {
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    *few = *c;
+    few->bounces = bounces;
+    const vit_status status = trace(p, packed, FEW_PATHS, few, why);
+    if (status == VIT_OK)
+        compare(few, black, &found);
+    *share = status == VIT_OK ? found.limited : 0;
+    free(few);
+    return status;
 }
 
 /* Direct and indirect light alone. */
@@ -217,7 +250,7 @@ vit_status check_compare(const pipeline *p, const pipeline_packed *packed, const
     vit_status status = play(p, packed, c, VIT_VIEW_final, picture, why);
     if (status == VIT_OK)
         compare(c, picture, out);
-    if (status == VIT_OK && parts && out->worst > CHECK_LIMIT) {
+    if (status == VIT_OK && parts) {
         status = play(p, packed, c, VIT_VIEW_direct, direct, why);
         if (status == VIT_OK)
             compare_parts(c, picture, direct, out);

@@ -28,7 +28,7 @@ typedef struct check_found {
     check_ratio flux[3]; /* of all pixels, a channel */
     check_ratio dark;    /* of their darker half, all channels; of pixels that show surfaces in other light than their own */
     double direct, indirect; /* of all pixels, all channels: of each part alone; 1: not looked at */
-    double limited;          /* what paths of the pack's bounces find of all light */
+    double limited;          /* what paths of the check's bounces find of all light, or of the darker half's if that is less */
     double worst;            /* largest distance of flux and dark from 1 beyond their errors */
     double black, white;     /* shares of pixels that show as black, as white */
     double unlit;            /* share of pixels that get no light at all */
@@ -43,6 +43,11 @@ vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *
 /* Plays the pack's frames on the device host and compares. `parts`: direct and indirect light alone, too. */
 vit_status check_compare(const pipeline *p, const pipeline_packed *packed, const check *c, bool parts, check_found *out,
                          vit_text *why);
+
+/* The share of the light, and of the darker half's, whichever is less, that paths of so many bounces find: the same paths, a
+ * few. */
+vit_status check_share(const pipeline *p, const pipeline_packed *packed, const check *c, uint32_t bounces, double *share,
+                       vit_text *why);
 
 /* "flux 1.01 0.99 1.00, dark half 1.02". */
 void check_text(const check_found *f, char *text, size_t room);

@@ -1,5 +1,5 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
-#include "check.h"
+#include "auto.h"
 #include "cost/adds.h"
 #include "cost/fit_pack.h"
 #include "list.h"
@@ -16,6 +16,7 @@ typedef struct bake {
     progress progress;
     pipeline pipeline;
     pipeline_packed packed;
+    auto_found chosen; /* with quality "auto" */
 } bake;
 
 /* Everything that is unfinished is in memory or under a temporary name, so that the end may come at once. */
@@ -86,17 +87,22 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (status != VIT_OK)
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
+    const bool chooses = p->scene.quality_auto && p->scene.check && !fits(&b->options);
+    if (chooses)
+        status = auto_choose(p, &b->chosen, why);
     const pipeline_choice asked = pipeline_default(p);
-    if (fits(&b->options))
+    if (status == VIT_OK && fits(&b->options))
         status = fit_pack(p, played_on, &budget, &b->packed, why);
-    else
+    else if (status == VIT_OK)
         status = pipeline_pack(p, &asked, &b->packed, why);
     if (status != VIT_OK)
         return status;
     if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     warn_of_missed_effects(b);
-    return p->scene.check ? check_pack(p, &b->packed, why) : VIT_OK;
+    if (chooses)
+        auto_say(p, &b->packed, &b->chosen);
+    return p->scene.check && !chooses ? check_pack(p, &b->packed, why) : VIT_OK;
 }
 
 /* A line each: name, what it adds, why. */
@@ -124,6 +130,8 @@ static vit_status explain(bake *b, vit_text *why) {
     vit_status status = vit_require(&info, &need, why);
     if (status != VIT_OK)
         return status;
+    if (b->chosen.tried > 0)
+        printf("quality \"auto\": { %s}, of %u tried %s\n\n", b->chosen.text, b->chosen.tried, b->chosen.right ? "the cheapest that is right" : "the best");
     adds all;
     status = adds_measure(&b->packed, p->threads, &b->progress, &all, why);
     progress_end(&b->progress);

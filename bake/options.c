@@ -143,6 +143,8 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         return *wants = "work units a frame, a whole number", budget_of(value, &o->fit_work) && o->fit_work == floor(o->fit_work);
     if (strcmp(name, "--radius") == 0)
         return *wants = "metres, or auto", radius_of(value, o);
+    if (strcmp(name, "--quality") == 0)
+        return *wants = "auto or stated", one_of(value, "auto", "stated", &o->quality);
     if (strcmp(name, "--estimate") == 0)
         return *wants = "list or buckets", one_of(value, "list", "buckets", &o->estimate);
     if (strcmp(name, "--smoothing") == 0)
@@ -207,6 +209,11 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     }
     s->frames = o->frames ? o->frames : s->frames;
     s->check = s->check && !o->no_check;
+    s->quality_auto = o->quality ? strcmp(o->quality, "auto") == 0 : s->quality_auto;
+    s->quality_kept |= (o->photons >= 0 ? QUALITY_KEPT_PHOTONS : 0u) | (o->bounces ? QUALITY_KEPT_BOUNCES : 0u) |
+                       (o->radius_given ? QUALITY_KEPT_RADIUS : 0u) | (o->zones >= 0 ? QUALITY_KEPT_ZONES | QUALITY_KEPT_LIGHT_ZONES : 0u) |
+                       (o->effective_area >= 0 ? QUALITY_KEPT_AREA : 0u) | (o->light_samples ? QUALITY_KEPT_LIGHT_SAMPLES : 0u) |
+                       (o->sky_samples ? QUALITY_KEPT_SKY_SAMPLES : 0u);
     q->photons = o->photons >= 0 ? o->photons : q->photons;
     q->bounces = o->bounces ? o->bounces : q->bounces;
     q->tile = o->tile ? o->tile : q->tile;
@@ -256,7 +263,9 @@ void options_help(void) {
          "  --list[=json]         bakes nothing: meshes, materials, textures, lights and their units, cameras, extensions, what is not done\n"
          "  --strict              a missing texture, a material of the scene file that no mesh has, is an error, not a warning\n"
          "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
-         "  --no-check            does not compare the picture with path tracing (else seconds)\n"
+         "  --no-check            does not compare the picture with path tracing (else seconds), and so chooses no quality either\n"
+         "  --quality auto        chooses zones, areas, radius, photons, bounces and samples by that check, but for what the scene file or an\n"
+         "                        option states; the default where there is no quality block. stated: what is stated, and defaults\n"
          "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take at most MS\n"
          "                        milliseconds (95th percentile) on this device; prints what it chose from\n"
          "  --fit-work N          likewise in work units of a frame: the same choice on every machine\n"

@@ -16,7 +16,7 @@ typedef struct options {
     bool radius_given;
     double fit;                /* milliseconds a frame, 0: none */
     double fit_work;           /* work units a frame, a whole number, 0: none */
-    const char *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
+    const char *quality, *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
     int normal_keys, zones, effective_area, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
     double antialias_contrast; /* -1: as the scene says */
     bool effects_given;

@@ -39,11 +39,12 @@ static const field sky_fields[] = {
 
 typedef struct quality_group {
     scene_quality q;
-    bool flattened;
+    bool flattened, automatic;
 } quality_group;
 
-enum { QUALITY_FLATTEN };
+enum { QUALITY_AUTOMATIC, QUALITY_FLATTEN };
 static const field quality_fields[] = {
+    [QUALITY_AUTOMATIC] = {"auto", FIELD_SWITCH, offsetof(quality_group, automatic), NULL},
     [QUALITY_FLATTEN] = {"flatten", FIELD_NUMBER, offsetof(quality_group, q.flatten), "(0, 1e4]"},
     {"photons", FIELD_WHOLE, offsetof(quality_group, q.photons), "[0, 1000000]"},
     {"bounces", FIELD_WHOLE, offsetof(quality_group, q.bounces), "[1, 32]"},
@@ -112,12 +113,28 @@ static bool read_sky(reader *r, const config_setting_t *root) {
     return true;
 }
 
-/* Puts the group's settings over *q. */
-static bool merge_quality(const place *at, const config_setting_t *group, scene_quality *q) {
+/* QUALITY_KEPT_* of a setting's name; 0: "auto" does not choose it. */
+static uint32_t kept_bit(const char *name) {
+#define X(bit, word)                                                                                                           \
+    if (strcmp(name, #word) == 0)                                                                                              \
+        return QUALITY_KEPT_##bit;
+    SCENE_QUALITY_AUTO(X)
+#undef X
+    return 0;
+}
+
+/* Puts the group's settings over *q. *automatic and *kept: as in `scene`; may be NULL. */
+static bool merge_quality(const place *at, const config_setting_t *group, scene_quality *q, bool *automatic, uint32_t *kept) {
     quality_group g = {.q = *q, .flattened = q->flatten > 0};
     uint32_t seen = 0;
     if (!fields_read(at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
         return false;
+    if (g.automatic && !automatic)
+        return fields_fail(at, group, "'auto' is not for here");
+    for (int i = 0; i < FIELD_COUNT(quality_fields) && kept; i++)
+        *kept |= seen & FIELD_BIT(i) ? kept_bit(quality_fields[i].name) : 0;
+    if (automatic)
+        *automatic = g.automatic;
     if (g.q.tile & (g.q.tile - 1))
         return fields_fail(at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
     if (g.q.raw && !g.q.buckets)
@@ -137,7 +154,12 @@ static bool merge_quality(const place *at, const config_setting_t *group, scene_
 static bool read_quality(reader *r, const config_setting_t *root) {
     const config_setting_t *group = config_setting_get_member(root, "quality");
     reader_at(r, "quality", -1);
-    return !group || merge_quality(&r->at, group, &r->s->quality);
+    if (!group)
+        return true;
+    const char *word = config_setting_get_string(group);
+    if (word)
+        return strcmp(word, "auto") == 0 || fields_fail(&r->at, group, "must be \"auto\" or a group, got \"%.60s\"", word);
+    return merge_quality(&r->at, group, &r->s->quality, &r->s->quality_auto, &r->s->quality_kept);
 }
 
 vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why) {
@@ -146,7 +168,7 @@ vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why
     config_init(&config);
     bool fine = config_read_string(&config, text) == CONFIG_TRUE;
     if (fine)
-        fine = merge_quality(&at, config_root_setting(&config), q);
+        fine = merge_quality(&at, config_root_setting(&config), q, NULL, NULL);
     else
         (void)fields_fail(&at, NULL, "'%.200s': %s", text, config_error_text(&config));
     config_destroy(&config);
@@ -158,8 +180,38 @@ void scene_quality_text(const scene_quality *q, char *text, size_t room) {
     size_t used = 0;
     text[0] = '\0';
     for (int i = 0; i < FIELD_COUNT(quality_fields); i++)
-        if (i != QUALITY_FLATTEN || g.flattened)
+        if (i != QUALITY_AUTOMATIC && (i != QUALITY_FLATTEN || g.flattened))
             used += fields_write(&quality_fields[i], &g, text + used, room - used);
+}
+
+static const scene_quality default_quality = {.photons = 17000,
+                                              .bounces = 4,
+                                              .tile = 32,
+                                              .indirect_samples = 16,
+                                              .texture_filter = FILTER_BILINEAR,
+                                              .vertex_bits = 32,
+                                              .normal_bits = 16,
+                                              .sample_bits = 32,
+                                              .antialias = 1,
+                                              .antialias_contrast = 0.06,
+                                              .light_samples = 16,
+                                              .sky_samples = 16,
+                                              .specular_depth = 8,
+                                              .caustics = true};
+
+void scene_quality_difference(const scene_quality *q, char *text, size_t room) {
+    const quality_group g = {.q = *q}, plain = {.q = default_quality};
+    size_t used = 0;
+    text[0] = '\0';
+    for (int i = 0; i < FIELD_COUNT(quality_fields); i++) {
+        char usual[64];
+        if (!kept_bit(quality_fields[i].name))
+            continue;
+        const size_t written = fields_write(&quality_fields[i], &g, text + used, room - used);
+        (void)fields_write(&quality_fields[i], &plain, usual, sizeof usual);
+        used += strcmp(text + used, usual) != 0 ? written : 0;
+        text[used] = '\0';
+    }
 }
 
 /* libconfig knows no byte order mark. */
@@ -203,20 +255,8 @@ static bool read_top(reader *r, const config_setting_t *root) {
 
 static void set_defaults(scene *s) {
     *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .check = true, .sky = {.scale = 1.0}};
-    s->quality = (scene_quality){.photons = 17000,
-                                 .bounces = 4,
-                                 .tile = 32,
-                                 .indirect_samples = 16,
-                                 .texture_filter = FILTER_BILINEAR,
-                                 .vertex_bits = 32,
-                                 .normal_bits = 16,
-                                 .sample_bits = 32,
-                                 .antialias = 1,
-                                 .antialias_contrast = 0.06,
-                                 .light_samples = 16,
-                                 .sky_samples = 16,
-                                 .specular_depth = 8,
-                                 .caustics = true};
+    s->quality = default_quality;
+    s->quality_auto = true;
 }
 
 static vit_status copy_path(scene *s, const char *path, vit_text *why) {

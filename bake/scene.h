@@ -107,6 +107,19 @@ typedef struct scene_quality {
     bool caustics;             /* photon paths go on from mirrors and glass */
 } scene_quality;
 
+/* Settings that quality "auto" chooses, unless the block or an option states them: X(name, word). */
+#define SCENE_QUALITY_AUTO(X)                                                                                                  \
+    X(PHOTONS, photons) X(BOUNCES, bounces) X(RADIUS, radius) X(ZONES, zones) X(LIGHT_ZONES, light_zones)                      \
+    X(AREA, effective_area) X(LIGHT_SAMPLES, light_samples) X(SKY_SAMPLES, sky_samples)
+enum {
+#define X(name, word) QUALITY_AT_##name,
+    SCENE_QUALITY_AUTO(X)
+#undef X
+#define X(name, word) QUALITY_KEPT_##name = 1 << QUALITY_AT_##name,
+    SCENE_QUALITY_AUTO(X)
+#undef X
+};
+
 /* What `effects` of a scene file says. */
 enum { EFFECTS_AUTO, EFFECTS_ALL, EFFECTS_LISTED };
 #define SCENE_EFFECTS "auto|all" /* in this order */
@@ -132,6 +145,8 @@ typedef struct scene {
     scene_material *materials;
     int material_count;
     scene_quality quality;
+    bool quality_auto;         /* the baker chooses what is not stated (auto.h) */
+    uint32_t quality_kept;     /* QUALITY_KEPT_*: what is stated */
     int effects_choice;        /* EFFECTS_* */
     uint64_t effects;          /* EFFECTS_LISTED: VIT_BIT() of those named */
     inputs files;              /* the scene file, what it includes, and the files that it names */
@@ -150,5 +165,7 @@ void scene_free(scene *s);
 vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why);
 /* All settings of *q in that form, in one line: applied to any block it gives *q again. */
 void scene_quality_text(const scene_quality *q, char *text, size_t room);
+/* Those that quality "auto" chooses and that are not the defaults. */
+void scene_quality_difference(const scene_quality *q, char *text, size_t room);
 
 #endif

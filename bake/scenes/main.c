@@ -17,6 +17,7 @@ static const struct {
     {"furnace", furnace_make},
     {"atrium", atrium_make},
     {"balls", balls_make},
+    {"rooms", rooms_make},
 };
 
 static const char usage[] =

@@ -16,7 +16,7 @@ typedef struct scenes_report {
 /* False: a file could not be written, errno says why. */
 typedef bool scene_maker(const char *dir, scenes_report *report);
 
-scene_maker cornell_make, furnace_make, atrium_make, balls_make;
+scene_maker cornell_make, furnace_make, atrium_make, balls_make, rooms_make;
 
 /* dir/name + extension. False, with errno ENAMETOOLONG, if it does not fit. */
 bool scenes_path(char out[SCENES_PATH], const char *dir, const char *name, const char *extension);
