@@ -1,5 +1,6 @@
 #include "cost_outputs.h"
 #include "converge.h"
+#include "knobs.h"
 #include "report.h"
 #include "rewrite.h"
 #include <stdio.h>
@@ -9,8 +10,14 @@ static const char *file_of(const cost_options *o, uint32_t index) {
     return !o->output ? NULL : o->converge ? converge_name(index) : report_name(index);
 }
 
-vit_status cost_outputs_check(const cost_options *o, vit_text *why) {
-    vit_status status = o->write ? rewrite_check(o->write, why) : VIT_OK;
+vit_status cost_outputs_check(const cost_options *o, const scene *s, vit_text *why) {
+    vit_status status = knobs_check(o->knobs, why);
+    if (status == VIT_OK && o->frame >= s->frames) {
+        (void)snprintf(why->text, sizeof why->text, "--frame: the path has frames 0 to %d", s->frames - 1);
+        status = VIT_USAGE;
+    }
+    if (status == VIT_OK && o->write)
+        status = rewrite_check(o->write, why);
     for (uint32_t i = 0; status == VIT_OK && file_of(o, i); i++)
         status = pack_can_make(o->output, file_of(o, i), why);
     if (status == VIT_OK && o->cache && !o->no_cache)

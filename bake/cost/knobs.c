@@ -112,6 +112,11 @@ static vit_status select_knobs(const char *only, bool on[KNOBS], vit_text *why) 
     return VIT_OK;
 }
 
+vit_status knobs_check(const char *only, vit_text *why) {
+    bool on[KNOBS];
+    return select_knobs(only, on, why);
+}
+
 bool knobs_in_quality(const knob_setting *s) {
     return s->scale == 1.0 && s->lanes == 0;
 }

@@ -39,6 +39,8 @@ typedef struct knob_list {
 /* The default and each knob alone, value by value. VIT_USAGE: `only` names no knob. On failure nothing is left to close. */
 vit_status knobs_open(const knobs_input *in, knob_list *out, vit_text *why);
 void knobs_close(knob_list *l);
+/* That alone: whether `only`, "a,b,c" or NULL, names knobs. */
+vit_status knobs_check(const char *only, vit_text *why);
 
 /* Adds combinations until there are `upto` settings, spread evenly over the product of the knobs that are combined. */
 vit_status knobs_spread(knob_list *l, uint32_t upto, vit_text *why);

@@ -47,7 +47,7 @@ static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
         p->scene.width = o->width;
         p->scene.height = o->height;
     }
-    status = spread_rank() == 0 ? cost_outputs_check(o, why) : VIT_OK; /* it writes for all */
+    status = spread_rank() == 0 ? cost_outputs_check(o, &p->scene, why) : VIT_OK; /* it writes for all */
     if (status == VIT_OK)
         status = cost_outputs_are_no_inputs(o, p, why);
     if (spread_any(status != VIT_OK)) {

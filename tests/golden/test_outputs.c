@@ -213,6 +213,8 @@ static void what_cannot_be_written_is_known_before_the_work(void **state) {
     refuses_to_begin(TOOL_COST " " SCENE " -o /proc/d", "vitrine-cost", VIT_FAILED, "/proc");
     refuses_to_begin(TOOL_COST " " SCENE " -o -", "vitrine-cost", VIT_USAGE, "-o");
     refuses_to_begin(TOOL_COST " " SCENE " --fit 33 --cache " FOLDER "/mesh.obj", "vitrine-cost", VIT_FAILED, "mesh.obj");
+    refuses_to_begin(TOOL_COST " " SCENE " --fit 33 --knobs photons,none", "vitrine-cost", VIT_USAGE, "no knob 'none'");
+    refuses_to_begin(TOOL_COST " " SCENE " --fit 33 --frame 2", "vitrine-cost", VIT_USAGE, "frames 0 to 1");
     refuses_to_begin(TOOL_COST " " SCENE " --device 999 --fit 33", "vitrine-cost", VIT_FAILED, "999");
     refuses_to_begin(PLAY "--out raw:" FOLDER "/no/out", "vitrine-play", VIT_FAILED, "No such file");
     refuses_to_begin(PLAY "--out y4m:" FOLDER "/d", "vitrine-play", VIT_FAILED, "is a folder");
