@@ -1,6 +1,6 @@
 # Short forms of all that `make test` does not run, to their ends and with all that they check, so that none of it rots: .ci/run. They time
 # nothing. Each is the very target, with less to do.
-SMOKE_BENCHES := $(BENCH:tests/bench/bench_%.c=smoke-bench/%)
+SMOKE_BENCHES := $(patsubst tests/bench/bench_%.c,smoke-bench/%,$(wildcard tests/bench/bench_*.c))
 # With and without OpenCL; a file of each folder; a reader, the frame and the player of a pack; and each fuzzer for a few seconds.
 SMOKE_NO_OPENCL := config=debug HOST_ISAS=baseline HOST_LANES=8
 SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack_write.c bake/cost/front.c
@@ -15,7 +15,7 @@ smoke:
 smoke-bench: deps
 	@$(MAKE) $(SIDE_BY_SIDE) build-benches
 	@VITRINE_BENCH=smoke $(MAKE) $(SIDE_BY_SIDE) $(SMOKE_BENCHES)
-build-benches: $(BENCH_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
+build-benches: $(SMOKE_BENCHES:smoke-bench/%=$(B)/tests/bench/bench_%) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 $(SMOKE_BENCHES): smoke-bench/%: $(B)/tests/bench/bench_%
 	@tests/run.sh $@ $<
 smoke-matrix:
