@@ -1,5 +1,6 @@
 #include "fit.h"
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -79,7 +80,7 @@ vit_status fit_choose(const cost_results *r, const fit_budget *b, uint32_t *chos
     }
     for (uint32_t i = 0; i < r->count; i++) {
         const cost_setting *s = &r->settings[i];
-        if (s->elsewhere)
+        if (s->elsewhere || isinf(price(s, b)))
             continue;
         if (closest == r->count || price(s, b) < price(&r->settings[closest], b))
             closest = i;
@@ -107,7 +108,7 @@ static bool on_front(const cost_results *r, const fit_budget *b, uint32_t i) {
 static uint32_t front_order(const cost_results *r, const fit_budget *b, uint32_t chosen, uint32_t *order) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {
-        if (i != chosen && !on_front(r, b, i))
+        if ((i != chosen && !on_front(r, b, i)) || isinf(price(&r->settings[i], b))) /* not timed */
             continue;
         uint32_t at = count++;
         for (; at > 0 && price(&r->settings[order[at - 1]], b) > price(&r->settings[i], b); at--)

@@ -78,6 +78,8 @@ vit_status fit_pack(pipeline *p, uint32_t device, const fit_budget *budget, pipe
     cost_results results;
     const sweep_input in = {.pipeline = p,
                             .device = device,
+                            .fit_ms = budget->ms,
+                            .relmse = budget->relmse,
                             .settings = SWEEP_SETTINGS,
                             .frame = -1,
                             .repeats = budget->ms > 0 ? SWEEP_REPEATS : 0,

@@ -87,6 +87,8 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
     vit_status status = find_device(o, &device, why);
     const sweep_input in = {.pipeline = p,
                             .device = device,
+                            .fit_ms = o->output ? 0 : o->fit, /* a report shows all times */
+                            .relmse = o->relmse,
                             .knobs = o->knobs,
                             .settings = o->settings,
                             .frame = o->frame,

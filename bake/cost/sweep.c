@@ -196,7 +196,9 @@ static vit_status run(sweep *s, vit_text *why) {
     sweep_compare_direct(s);
     progress_end(s->progress);
     say_reference(s);
-    if (s->in->repeats > 0)
+    if (s->in->repeats > 0 && s->in->fit_ms > 0)
+        status = sweep_times_to_fit(s, why);
+    else if (s->in->repeats > 0)
         status = sweep_times(s, why);
     if (status == VIT_OK)
         front_mark(s->out);

@@ -34,6 +34,8 @@ typedef struct sweep_input {
     uint32_t frames;      /* of the path that are played, 1 .. SWEEP_FRAMES; 0: SWEEP_FRAMES */
     sweep_list_fn *list;  /* makes the settings; NULL: from the knobs, and by searching */
     const void *list_user;
+    double fit_ms;   /* > 0: only what could be the most accurate setting within so many ms is timed; 0: all */
+    bool relmse;     /* accurate by total.relmse */
     uint32_t timed;  /* the first so many settings are timed; 0: all */
     bool normals;    /* fills out->normals: a second reference is made */
     uint64_t memory; /* bytes that the packs, and the buffers of what is open at once, may take; 2 settings in any case */

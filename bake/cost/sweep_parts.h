@@ -60,6 +60,11 @@ vit_status sweep_normals(sweep *s, vit_text *why);
 /* sweep_times.c: ms of every setting, and the path tracer's. */
 vit_status sweep_times(sweep *s, vit_text *why);
 
+/* The same for the settings list[0 .. count - 1], the default first, alone. */
+vit_status sweep_time_some(sweep *s, const uint32_t *list, uint32_t count, vit_text *why);
+/* sweep_fit.c: ms of the settings that could be the most accurate within in->fit_ms; infinite for all others. */
+vit_status sweep_times_to_fit(sweep *s, vit_text *why);
+
 /* sweep_errors.c: errors of every setting against the reference as it stands. */
 vit_status sweep_errors(sweep *s, vit_text *why);
 /* The smallest total NMSE of any setting. */

@@ -7,14 +7,13 @@
 
 #define PATH_TRACED SWEEP_LEAST_REPEATS
 
-/* What a batch holds: the default first, then settings first .. end - 1. */
+/* What is open at once: the default first. */
 typedef struct batch {
-    uint32_t first, end;
+    const uint32_t *setting; /* an entry: its setting */
+    uint32_t count;
     timing_entry *entries;
     double *ms; /* repeats a setting */
     double *pass_ms;
-    uint32_t *setting; /* an entry: its setting */
-    uint32_t count;
 } batch;
 
 static uint64_t bytes_of(const cost_setting *c) {
@@ -38,31 +37,28 @@ static void batch_free(batch *b) {
     free(b->entries);
     free(b->ms);
     free(b->pass_ms);
-    free(b->setting);
 }
 
 static vit_status batch_fill(sweep *s, batch *b, vit_text *why) {
-    const size_t most = (size_t)(b->end - b->first) + 1, repeats = s->in->repeats;
+    const size_t most = b->count, repeats = s->in->repeats;
     b->entries = calloc(most, sizeof *b->entries);
     b->ms = calloc(most * repeats, sizeof *b->ms);
     b->pass_ms = calloc(most * repeats * VIT_MAX_PASSES, sizeof *b->pass_ms);
-    b->setting = calloc(most, sizeof *b->setting);
-    if (!b->entries || !b->ms || !b->pass_ms || !b->setting) {
+    if (!b->entries || !b->ms || !b->pass_ms) {
         snprintf(why->text, sizeof why->text, "out of memory");
         return VIT_FAILED;
     }
-    for (uint32_t i = 0; i < b->end; i = i == 0 ? b->first : i + 1) {
+    for (uint32_t k = 0; k < b->count; k++) {
+        const uint32_t i = b->setting[k];
         vit_status status = sweep_take_pack(s, i, why);
         if (status != VIT_OK)
             return status;
-        b->setting[b->count] = i;
-        b->entries[b->count] = (timing_entry){.name = s->knobs.settings[i].name,
-                                              .pack = s->packs[i].bytes,
-                                              .pack_size = s->packs[i].size,
-                                              .lanes = s->knobs.settings[i].lanes,
-                                              .ms = b->ms + b->count * repeats,
-                                              .pass_ms = b->pass_ms + b->count * repeats * VIT_MAX_PASSES};
-        b->count++;
+        b->entries[k] = (timing_entry){.name = s->knobs.settings[i].name,
+                                       .pack = s->packs[i].bytes,
+                                       .pack_size = s->packs[i].size,
+                                       .lanes = s->knobs.settings[i].lanes,
+                                       .ms = b->ms + k * repeats,
+                                       .pass_ms = b->pass_ms + k * repeats * VIT_MAX_PASSES};
     }
     return VIT_OK;
 }
@@ -114,7 +110,8 @@ static vit_status time_batch(sweep *s, batch *b, tracer *traced, vit_text *why) 
     vit_status status = batch_fill(s, b, why);
     if (status != VIT_OK)
         return status;
-    snprintf(label, sizeof label, "times: settings %u to %u", b->first, b->end - 1);
+    snprintf(label, sizeof label, b->count > 1 ? "times: settings %u to %u" : "times: the default", b->setting[b->count > 1],
+             b->setting[b->count - 1]);
     progress_stage(s->progress, label);
     const timing_input in = {.entries = b->entries,
                              .count = b->count,
@@ -122,33 +119,48 @@ static vit_status time_batch(sweep *s, batch *b, tracer *traced, vit_text *why) 
                              .repeats = s->in->repeats,
                              .progress = step,
                              .user = s->progress,
-                             .between = trace_frame,
+                             .between = traced ? trace_frame : NULL,
                              .other = traced,
                              .cancel = s->in->cancel};
     status = timing_measure(&in, why);
     progress_end(s->progress);
     if (status != VIT_OK)
         return status;
-    const double first = s->out->settings[0].ms;
-    const bool anchored = b->first > 1;
+    const bool anchored = s->out->settings[0].timed > 0;
     double scale = 1;
     if (anchored)
-        scale = first / timing_median(b->entries[0].ms, s->in->repeats);
+        scale = s->out->settings[0].ms / timing_median(b->entries[0].ms, s->in->repeats);
     for (uint32_t i = anchored ? 1 : 0; i < b->count; i++)
         note_times(s, b, i, scale);
     return VIT_OK;
 }
 
+static vit_status time_list(sweep *s, const uint32_t *list, uint32_t count, tracer *traced, vit_text *why) {
+    batch b = {.setting = list, .count = count};
+    vit_status status = time_batch(s, &b, traced, why);
+    for (uint32_t k = 1; k < count; k++)
+        sweep_drop_pack(s, list[k]);
+    batch_free(&b);
+    return status;
+}
+
+vit_status sweep_time_some(sweep *s, const uint32_t *list, uint32_t count, vit_text *why) {
+    return time_list(s, list, count, NULL, why);
+}
+
 static vit_status time_batches(sweep *s, tracer *traced, vit_text *why) {
-    vit_status status = VIT_OK;
+    uint32_t *list = calloc(s->out->count, sizeof *list);
+    vit_status status = list ? VIT_OK : VIT_FAILED;
+    if (!list)
+        snprintf(why->text, sizeof why->text, "out of memory");
     for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < settings_timed(s));) {
-        batch b = {.first = first, .end = batch_end(s, first)};
-        status = time_batch(s, &b, traced, why);
-        for (uint32_t i = b.first; i < b.end; i++)
-            sweep_drop_pack(s, i);
-        batch_free(&b);
-        first = b.end > first ? b.end : first + 1;
+        const uint32_t end = batch_end(s, first);
+        for (uint32_t i = first; i < end; i++)
+            list[1 + i - first] = i;
+        status = time_list(s, list, 1 + end - first, traced, why);
+        first = end > first ? end : first + 1;
     }
+    free(list);
     return status;
 }
 
