@@ -357,10 +357,11 @@ static int class_at(const emitters *e, const emitter_place *p) {
     return class_of(e, place_in_list(e->side, e->count, side_met(&e->scene, p->triangle, vec3_scale(p->normal, -1.0f))));
 }
 
-static vit_emitter emitter_of(emitter_place p, float share) {
+static vit_emitter emitter_of(const emitters *e, emitter_place p, float share) {
     return (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
                          .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
                          .normal = {p.normal.x, p.normal.y, p.normal.z},
+                         .near2 = side_material(&e->scene, 2 * p.triangle)->near2,
                          .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
 }
 
@@ -375,7 +376,7 @@ static emitter_place place_set(const emitters *e, const class *c, uint32_t i) {
 static void place_class(const emitters *e, const class *c, uint32_t samples, vit_emitter *out) {
     const float share = 1.0f / (float)c->points;
     for (uint32_t i = 0; i < VIT_PATTERNS * c->points; i++)
-        out[i / c->points * samples + i % c->points] = emitter_of(place_set(e, c, i), share);
+        out[i / c->points * samples + i % c->points] = emitter_of(e, place_set(e, c, i), share);
 }
 
 /* The rest's points in all sets together. */
@@ -433,7 +434,15 @@ static void place_rest(const emitters *e, const class all[CLASSES + 1], uint32_t
     for (uint32_t i = 0; i < count; i++) {
         const int k = r.class[i];
         const double factor = whole > 0 ? r.whole[k] / r.found[k] * (whole / some) : 1.0;
-        out[i / c->points * samples + i % c->points] = emitter_of(r.place[i], (float)(share * factor));
+        out[i / c->points * samples + i % c->points] = emitter_of(e, r.place[i], (float)(share * factor));
+    }
+}
+
+void emitters_near(const emitters *e, uint32_t samples, vit_material *materials) {
+    for (uint32_t i = 0; i < e->count; i++) {
+        const uint32_t m = e->scene.attributes[e->side[i] / 2].material & VIT_MATERIAL_INDEX;
+        const double area = e->sum[e->count - 1] / (samples * radiance_sum(materials + m)) * ldexp(1.0, e->step[i]);
+        materials[m].near2 = float_max(materials[m].near2, (float)(area * (double)PHOTON_INV_PI));
     }
 }
 

@@ -298,6 +298,8 @@ static vit_status place_emitters(const pipeline *p, pipeline_packed *out, vit_te
     out->emitters = malloc(((size_t)s->area_samples + s->sky_samples + 1) * VIT_PATTERNS * sizeof *out->emitters);
     if (!out->emitters)
         return out_of_memory(why);
+    if (s->area_samples > 0)
+        emitters_near(&out->plan.area, s->area_samples, out->plan.materials);
     const vit_status status = s->area_samples > 0 ? emitters_sets(&out->plan.area, s->area_samples, out->emitters, why) : VIT_OK;
     if (s->sky_samples > 0)
         sky_sets(&p->sky, s->sky_samples, out->emitters + (size_t)VIT_PATTERNS * s->area_samples);

@@ -194,6 +194,49 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
 }
 #endif
 
+#if VIT_WITH(AREA_LIGHTS)
+/* Adds the light of surfaces nearer than vit_material.near2, where points are too far apart: as many rays by the cosine as a set has points find
+ * it. `set`: the samples' sets. Points leave out just what is added here. */
+static inline void lit_by_near(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, li set, li own, lit_sample *s WORK_PASSED)
+{
+    li near = L_I(0);
+    float far2 = 0;
+    for (uint i = 0; i < VIT_PATTERNS * points; i++) { /* a surface within its distance has a point within twice that */
+        lv3 to = lv3_sub(lv3_load(emitters[i].position), s->p);
+        near |= L_LT(lv3_dot(to, to), L_F(4.0f * emitters[i].near2));
+        far2 = vit_max(far2, emitters[i].near2);
+    }
+    near &= s->hit;
+    if (!l_any(near))
+        return;
+    global const float *normals = (global const float *)triangles, *lights = (global const float *)materials;
+    const int triangle_words = (int)(sizeof(vit_triangle) / sizeof(float)), material_words = (int)(sizeof(vit_material) / sizeof(float)),
+              words = (int)(sizeof(vit_attributes) / sizeof(uint));
+    const float e = vit_div(VIT_PI, (float)points), far = vit_sqrt(far2);
+    for (uint i = 0; i < points; i++) {
+        lu number = L_AS_UINT(set * (int)points) + L_U(i); /* a plane sequence (Roberts 2018) over all sets */
+        lv3 d = ray_cosine(s->n, l_unit_float(number * 0xc13fa9a9u + 0x80000000u), l_unit_float(number * 0x91e10da5u + 0x80000000u));
+        ray_packet r = ray_make(s->p, d);
+        lf t = L_F(far);
+        li triangle = L_I((int)VIT_NONE);
+        WORK_LANES(shadow_rays, near);
+        ray_nearest(RAY_SCENE, &r, near, &t, &triangle);
+        WORK_TRACED(r);
+        li lit = near & L_NE(triangle, L_I((int)VIT_NONE)) & L_NE(triangle, own);
+        if (!l_any(lit))
+            continue;
+        li at = lit & triangle;
+        lv3 n = lv3_set(L_GATHER(lf, normals + 3, at * triangle_words), L_GATHER(lf, normals + 7, at * triangle_words), L_GATHER(lf, normals + 11, at * triangle_words));
+        lu word = l_gather_u((global const uint *)attributes + 3, at * words);
+        lu dark = l_sel_u(L_GT(lv3_dot(n, d), L_F(0)), L_U(VIT_SIDE_DARK_BACK), L_U(VIT_SIDE_DARK_FRONT));
+        li m = L_AS_INT(word & L_U(VIT_MATERIAL_INDEX)) * material_words;
+        lit &= L_EQ(L_AS_INT(word & dark), L_I(0)) & L_LT(t * t, L_GATHER(lf, lights + 18, m));
+        lv3 radiance = lv3_set(L_GATHER(lf, lights + 4, m), L_GATHER(lf, lights + 5, m), L_GATHER(lf, lights + 6, m));
+        lit_add(s, d, l_sel(lit, L_F(e), L_F(0)), radiance);
+    }
+}
+#endif
+
 /* Adds the light of one of the fixed sets of points: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and each copy another again. */
 static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first, li hit,
                                    LIT_PARAMETERS WORK_PASSED)
@@ -203,7 +246,11 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, globa
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
-    li at = (((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1)) * (int)points * stride;
+    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride;
+#if VIT_WITH(AREA_LIGHTS)
+    if (!sky)
+        lit_by_near(RAY_SCENE, emitters, points, set, L_AS_INT(L_LOAD(hit_triangle + first)), &s WORK_PASS);
+#endif
     for (uint i = 0; i < points; i++, at += stride) {
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
         lf d = L_F(3e38f), e;
@@ -218,6 +265,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, globa
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
             e = l_div(l_max(lv3_dot(s.n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
+            e = l_sel(L_LT(d2, L_GATHER(lf, p + 7, at)), L_F(0), e);
         }
         li lit = s.hit & L_GT(e, L_F(0));
         if (!l_any(lit))

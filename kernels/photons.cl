@@ -35,15 +35,6 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lv3 *o
     return d;
 }
 
-/* Cosine-distributed direction about n from two random numbers. */
-static inline lv3 photon_bounce(lv3 n, lf a, lf b)
-{
-    lf s = l_sqrt(a), c = l_sqrt(l_max(1.0f - a, L_F(0))), sp, cp;
-    l_sincos_turn(b, &sp, &cp);
-    ray_packet frame = ray_make(n, n);
-    return lv3_unit(lv3_along(lv3_along(lv3_scale(n, c), frame.ax, s * cp), frame.ay, s * sp));
-}
-
 constant uint photon_alpha[6] = VIT_BOUNCE_ALPHA;
 
 /* Two numbers in [0, 1) for the reflection at a hit. */
@@ -177,7 +168,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
         lf u, v;
         photon_numbers(path, hit_number, &u, &v);
-        next = photon_bounce(s.face, u, v);
+        next = ray_cosine(s.face, u, v);
         o = s.position;
         from = lv3_sel(matt, s.face, lv3_set(L_F(0), L_F(0), L_F(0)));
         if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) {

@@ -129,7 +129,9 @@ static const char *shine_fault(const vit_material *m) {
         return "absorption must be finite and >= 0";
     if (m->lights > 1)
         return "lights must be 0 or 1";
-    return all_zero(m->pad, 2) ? 0 : "padding is not 0";
+    if (!in_range(m->near2, 0.0f, m->lights ? FLT_MAX : 0.0f))
+        return "near2 must be finite and >= 0, and 0 where nothing shines";
+    return m->pad == 0 ? 0 : "padding is not 0";
 }
 
 vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
@@ -207,6 +209,8 @@ vit_status vit_pack_check_emitters(const vit_scene *s, const vit_emitter *emitte
                                (unsigned long long)i);
         if (i < area ? !in_range(e->radius2, FLT_MIN, FLT_MAX) : !all_in_range(&e->radius2, 1, 0.0f, 0.0f))
             return vit_pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky", (unsigned long long)i);
+        if (!in_range(e->near2, 0.0f, i < area ? FLT_MAX : 0.0f))
+            return vit_pack_refuse(why, "section EMIT: point %llu: near2 must be finite and >= 0, and 0 in the sky", (unsigned long long)i);
         if (!all_in_range(e->power, 3, 0.0f, VIT_MAX_INTENSITY))
             return vit_pack_refuse(why, "section EMIT: point %llu: power must be in 0..1e15", (unsigned long long)i);
     }

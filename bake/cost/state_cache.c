@@ -66,6 +66,18 @@ static uint64_t hash_lights(const reference_input *in) {
     return hash;
 }
 
+/* Without what follows from light_samples. */
+static uint64_t hash_materials(const vit_material *materials, uint32_t count) {
+    uint64_t parts[2] = {0, 0};
+    for (uint32_t i = 0; i < count; i++) {
+        vit_material m = materials[i];
+        m.near2 = 0.0f;
+        parts[0] = vit_hash(parts, sizeof parts);
+        parts[1] = vit_hash(&m, sizeof m);
+    }
+    return vit_hash(parts, sizeof parts);
+}
+
 uint64_t state_key(const reference_input *in) {
     const void *const *data = in->sections->data;
     const vit_scene *s = data[VIT_SECTION_META];
@@ -76,7 +88,7 @@ uint64_t state_key(const reference_input *in) {
         vit_hash((const vit_camera *)data[VIT_SECTION_CAMS] + in->frame, sizeof(vit_camera)),
         vit_hash(data[VIT_SECTION_GEOM], s->triangles * sizeof(vit_triangle)),
         vit_hash(data[VIT_SECTION_ATTR], s->triangles * sizeof(vit_attributes)),
-        vit_hash(data[VIT_SECTION_MATL], s->materials * sizeof(vit_material)),
+        hash_materials(data[VIT_SECTION_MATL], s->materials),
         vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
         vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
         vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32)),

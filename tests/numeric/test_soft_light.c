@@ -104,6 +104,33 @@ static void a_rectangle_lights_as_lambert_says(void **state) {
     catalogue_sweep("samples", "points on the lamp", "relative error of a pixel, rms", points, count);
 }
 
+/* A box whose walls all shine: L + albedo L everywhere, in its corners too, where points are too far apart and rays find the
+ * walls. */
+static void a_box_whose_walls_shine_is_lit_alike_up_to_its_corners(void **state) {
+    static float pixels[FLOATS];
+    FILE *f = scene_lab_create(*state, "box.mtl");
+    (void)fprintf(f, "newmtl wall\nKd %g %g %g\nKe 1 1 1\n", ALBEDO, ALBEDO, ALBEDO);
+    (void)fclose(f);
+    f = scene_lab_create(*state, "box.obj");
+    (void)fprintf(f, "mtllib box.mtl\nusemtl wall\n");
+    for (int i = 0; i < 8; i++)
+        (void)fprintf(f, "v %d %d %d\n", i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    (void)fprintf(f, "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n");
+    (void)fclose(f);
+    render(*state, "box.obj", "", 64, pixels);
+    double square = 0, sum = 0, rim = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double ratio = ((double)pixels[4 * i] - 1) / ALBEDO;
+        const bool at_rim = i % SIDE < 2 || i % SIDE >= SIDE - 2;
+        square += pow(ratio - 1, 2) / (SIDE * SIDE);
+        sum += ratio / (SIDE * SIDE);
+        rim += at_rim ? ratio / (4 * SIDE) : 0;
+    }
+    catalogue_row("soft light", "box whose walls shine, 64 points: pixels", sqrt(square), 0.15, "relative rms");
+    catalogue_row("soft light", "box whose walls shine, 64 points: mean", fabs(sum - 1), 0.005, "relative");
+    catalogue_row("soft light", "box whose walls shine, 64 points: at the rim", fabs(rim - 1), 0.03, "relative");
+}
+
 static void an_even_sky_lights_a_plane_by_pi(void **state) {
     static float pixels[FLOATS];
     static const struct {
@@ -172,6 +199,7 @@ static int set_up(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_rectangle_lights_as_lambert_says),
+                                       cmocka_unit_test(a_box_whose_walls_shine_is_lit_alike_up_to_its_corners),
                                        cmocka_unit_test(an_even_sky_lights_a_plane_by_pi),
                                        cmocka_unit_test(a_picture_is_seen_where_it_is)};
     return cmocka_run_group_tests_name("soft light", tests, set_up, scene_lab_tear_down);

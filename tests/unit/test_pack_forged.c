@@ -99,7 +99,8 @@
     X(MATL, ior_below_1, "ior", im->materials[0].ior = 0.5f)                                                                   \
     X(MATL, negative_absorption, "absorption", im->materials[0].absorption[2] = -1)                                            \
     X(MATL, lights_of_2, "lights must be 0 or 1", im->materials[0].lights = 2)                                                 \
-    X(MATL, padding_in_use, "padding", im->materials[1].pad[1] = 7)                                                            \
+    X(MATL, rays_for_what_does_not_shine, "near2", im->materials[1].near2 = 1)                                                  \
+    X(MATL, padding_in_use, "padding", im->materials[1].pad = 7)                                                            \
     X(LITE, directional_without_its_effect, "without the effect DIRECTIONAL", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL)      \
     X(LITE, directional_with_a_range, "directional light with a range", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL, EFFECTS(BIT(DIRECTIONAL), 0))\
     X(META, no_slices, "slice_count", im->scene->slice_count = 0)                                                              \
