@@ -63,10 +63,19 @@ static vit_status trace(const pipeline *p, const pipeline_packed *packed, uint32
     return status;
 }
 
-vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why) {
+static void place_spots(const pipeline_packed *packed, check *c) {
     c->bounces = packed->plan.scene.bounces;
     for (uint32_t i = 0; i < c->count; i++)
         c->spots[i].frame = place_of(c, packed, i * c->frame_count / c->count);
+}
+
+vit_status check_glance(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why) {
+    place_spots(packed, c);
+    return trace(p, packed, FEW_PATHS, c, why);
+}
+
+vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why) {
+    place_spots(packed, c);
     progress_stage(p->progress, "check against path tracing");
     const vit_status status = trace(p, packed, MOST_PATHS, c, why);
     progress_end(p->progress);

@@ -44,6 +44,8 @@ vit_status check_trace(const pipeline *p, const pipeline_packed *packed, check *
 vit_status check_compare(const pipeline *p, const pipeline_packed *packed, const check *c, bool parts, check_found *out,
                          vit_text *why);
 
+/* The same by a few paths: enough for a mean brightness. */
+vit_status check_glance(const pipeline *p, const pipeline_packed *packed, check *c, vit_text *why);
 /* The share of the light, and of the darker half's, whichever is less, that paths of so many bounces find: the same paths, a
  * few. */
 vit_status check_share(const pipeline *p, const pipeline_packed *packed, const check *c, uint32_t bounces, double *share,

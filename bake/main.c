@@ -1,5 +1,6 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
 #include "auto.h"
+#include "exposure.h"
 #include "cost/adds.h"
 #include "cost/fit_pack.h"
 #include "list.h"
@@ -84,6 +85,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
         status = pipeline_load(p, why);
     if (status == VIT_OK)
         status = check_against_inputs(b, why);
+    if (status == VIT_OK)
+        status = exposure_settle(p, why);
     if (status != VIT_OK)
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};

@@ -24,6 +24,14 @@ static bool radius_of(const char *text, options *o) {
     return option_number(text, 0, 1e9, &o->radius) && o->radius > 0;
 }
 
+static bool exposure_of(const char *text, options *o) {
+    o->exposure_given = true;
+    o->exposure = 0;
+    if (text && strcmp(text, "auto") == 0)
+        return true;
+    return option_number(text, 0, 1e9, &o->exposure) && o->exposure > 0;
+}
+
 /* A positive number. */
 static bool budget_of(const char *text, double *out) {
     return option_number(text, 0, 1e18, out) && *out > 0;
@@ -143,6 +151,8 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
         return *wants = "work units a frame, a whole number", budget_of(value, &o->fit_work) && o->fit_work == floor(o->fit_work);
     if (strcmp(name, "--radius") == 0)
         return *wants = "metres, or auto", radius_of(value, o);
+    if (strcmp(name, "--exposure") == 0)
+        return *wants = "a factor on radiance, or auto", exposure_of(value, o);
     if (strcmp(name, "--quality") == 0)
         return *wants = "auto or stated", one_of(value, "auto", "stated", &o->quality);
     if (strcmp(name, "--estimate") == 0)
@@ -209,6 +219,8 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     }
     s->frames = o->frames ? o->frames : s->frames;
     s->check = s->check && !o->no_check;
+    s->exposure_auto = o->exposure_given ? !(o->exposure > 0) : s->exposure_auto;
+    s->exposure_fixed = o->exposure;
     s->quality_auto = o->quality ? strcmp(o->quality, "auto") == 0 : s->quality_auto;
     s->quality_kept |= (o->photons >= 0 ? QUALITY_KEPT_PHOTONS : 0u) | (o->bounces ? QUALITY_KEPT_BOUNCES : 0u) |
                        (o->radius_given ? QUALITY_KEPT_RADIUS : 0u) | (o->zones >= 0 ? QUALITY_KEPT_ZONES | QUALITY_KEPT_LIGHT_ZONES : 0u) |
@@ -281,7 +293,7 @@ void options_help(void) {
          "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
          "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
          "  --vertex-bits 32|16  --normal-bits 16|8  --sample-bits 32|16  --light-samples N  --sky-samples N\n"
-         "  --antialias 1|2|4|8|16  --antialias-contrast 0..1  --antialias-filter box|tent  --specular-depth N  --caustics 0|1\n"
+         "  --antialias 1|2|4|8|16  --antialias-contrast 0..1  --antialias-filter box|tent  --specular-depth N  --caustics 0|1  --exposure N|auto\n"
          "  --effects auto|all|none|NAME,NAME...   of mirror, glass, antialias and so on; the rest is left out\n"
          "\n"
          "Exit codes:");

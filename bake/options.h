@@ -16,6 +16,8 @@ typedef struct options {
     bool radius_given;
     double fit;                /* milliseconds a frame, 0: none */
     double fit_work;           /* work units a frame, a whole number, 0: none */
+    double exposure;           /* of all frames; 0 with exposure_given: auto */
+    bool exposure_given;
     const char *quality, *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
     int normal_keys, zones, effective_area, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
     double antialias_contrast; /* -1: as the scene says */

@@ -254,7 +254,7 @@ static bool read_top(reader *r, const config_setting_t *root) {
 }
 
 static void set_defaults(scene *s) {
-    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .check = true, .sky = {.scale = 1.0}};
+    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .exposure_factor = 1.0, .check = true, .sky = {.scale = 1.0}};
     s->quality = default_quality;
     s->quality_auto = true;
 }

@@ -138,6 +138,9 @@ typedef struct scene {
     char camera_use[SCENE_NAME]; /* name of a glTF camera that gives eye, target, up, fov; "" if none */
     double near;               /* metres, nearest depth slice; 0: auto */
     double camera_exposure;    /* factor on radiance of the camera named by camera_use; the keys have their own */
+    bool exposure_auto;        /* exposure_factor is to be found (exposure.h) */
+    double exposure_fixed;     /* of all frames, instead of what the camera says; 0: none */
+    double exposure_factor;    /* on the exposures of all frames; 0: 1 */
     scene_camera_key *camera;  /* at least one unless camera_use or `automatic` */
     int camera_count;
     scene_light *lights;

@@ -11,7 +11,7 @@ enum { CAMERA_USE };
 static const field camera_fields[] = {
     [CAMERA_USE] = {"use", FIELD_TEXT, offsetof(camera_head, use), NULL},
     {"near", FIELD_NUMBER, offsetof(camera_head, near), "(0, 1e6]"},
-    {"exposure", FIELD_NUMBER, offsetof(camera_head, exposure), "(0, 1e9]"},
+    {"exposure", FIELD_AUTO, offsetof(camera_head, exposure), "(0, 1e9]"},
     {"keys", FIELD_OTHER, 0, NULL},
 };
 
@@ -81,7 +81,8 @@ bool reader_camera(reader *r, const config_setting_t *root) {
         return fields_fail(&r->at, group, "needs either 'keys' or 'use'");
     memcpy(s->camera_use, head.use, sizeof s->camera_use);
     s->near = head.near;
-    s->camera_exposure = head.exposure;
+    s->exposure_auto = !(head.exposure > 0.0);
+    s->camera_exposure = s->exposure_auto ? 1.0 : head.exposure;
     if (!reader_allocate(r, &s->camera, count, sizeof *s->camera))
         return false;
     for (int i = 0; i < count; i++)

@@ -72,7 +72,8 @@ static bool make_camera(const scene *s, const view *v, double up[3], vit_camera 
     (void)normalize(right);
     cross(right, forward, up);
     const double pixel = 2.0 * tan(v->fov * PI / 360.0) / (double)s->height; /* at distance 1 */
-    *out = (vit_camera){.exposure = (float)v->exposure};
+    const double exposure = s->exposure_fixed > 0.0 ? s->exposure_fixed : v->exposure;
+    *out = (vit_camera){.exposure = (float)(s->exposure_factor > 0.0 ? exposure * s->exposure_factor : exposure)};
     for (int i = 0; i < 3; i++) {
         out->eye[i] = (float)v->eye[i];
         out->right[i] = (float)(pixel * right[i]);

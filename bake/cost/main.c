@@ -1,4 +1,5 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
+#include "exposure.h"
 #include "converge.h"
 #include "cost_options.h"
 #include "cost_outputs.h"
@@ -56,6 +57,8 @@ static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
         return status == VIT_OK ? VIT_FAILED : status;
     }
     status = pipeline_load(p, why);
+    if (status == VIT_OK)
+        status = exposure_settle(p, why);
     return status == VIT_OK ? cost_outputs_are_no_inputs(o, p, why) : status;
 }
 

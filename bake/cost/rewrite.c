@@ -43,13 +43,14 @@ static const char *past_space(const char *p) {
     }
 }
 
-/* The brace that opens the group whose name ends before p; NULL: p is followed by something else. */
+/* The brace that opens the group whose name ends before p, or the quote of a word in its place ("auto"); NULL: p is followed by something
+ * else. */
 static const char *opening(const char *p) {
     p = past_space(p);
     if (*p != ':' && *p != '=')
         return NULL;
     p = past_space(p + 1);
-    return *p == '{' ? p : NULL;
+    return *p == '{' || *p == '"' ? p : NULL;
 }
 
 /* The opening brace of the group called `quality` at depth 0; NULL if there is none. */
@@ -79,6 +80,8 @@ static const char *find_quality(const char *text) {
 
 static const char *closing(const char *brace) {
     int depth = 0;
+    if (*brace == '"')
+        return past_quiet(brace);
     for (const char *p = brace; *p;) {
         const char *next = past_quiet(p);
         if (next != p) {
@@ -99,7 +102,7 @@ char *rewrite_text(const char *text, const char *settings) {
     const char *open = find_quality(text), *close = open ? closing(open) : NULL;
     char *out = open && !close ? NULL : malloc(room);
     if (out && open)
-        (void)snprintf(out, room, "%.*s{ %s%s", (int)(open - text), text, settings, close);
+        (void)snprintf(out, room, "%.*s{ %s%s%s", (int)(open - text), text, settings, *open == '"' ? "}" : "", close);
     else if (out)
         (void)snprintf(out, room, "%s%squality: { %s};\n", text, length > 0 && text[length - 1] != '\n' ? "\n" : "", settings);
     return out;

@@ -3,6 +3,7 @@
  * any number of threads; the figures themselves are held to what is known: no photons leave all indirect light out, photons a
  * metre wide shine through walls. */
 #include "scene_lab.h"
+#include <math.h>
 
 static const char camera[] =
     "camera: { keys = ( { eye = [0.7, 0.5, 0.7]; target = [-0.5, -0.2, -0.5]; fov = 70.0; exposure = %s; } ); };\n";
@@ -156,6 +157,43 @@ static void a_suggested_exposure_shows_the_picture(void **state) {
     says(l, "of the picture is", false);
 }
 
+/* "auto" shows the median as 0.18 whatever the light's power, twice the light is half the exposure, and threads change nothing.
+ */
+static void an_automatic_exposure_follows_the_light(void **state) {
+    static const char *const powers[] = {"0.01, 0.01, 0.01", "10.0, 10.0, 10.0", "20.0, 20.0, 20.0"};
+    static float pixels[4 * 48 * 48 * 2];
+    double found[3], again;
+    scene_lab *l = *state;
+    for (int i = 0; i < 3; i++) {
+        char said[512] = "";
+        write_scene(l, "1.0", "0.3", powers[i], GREY "quality: { bounces = 10; };\n");
+        bake(l, "--exposure auto --threads 3");
+        FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
+        assert_non_null(f);
+        while (!strstr(said, "exposure \"auto\": "))
+            assert_non_null(fgets(said, sizeof said, f));
+        (void)fclose(f);
+        assert_int_equal(sscanf(strstr(said, "\": "), "\": %lf", found + i), 1);
+        scene_lab_play(l, "final", pixels, sizeof pixels / sizeof *pixels);
+        int above = 0;
+        for (size_t k = 0; k < sizeof pixels / sizeof *pixels; k += 4)
+            above += pixels[k + 1] > 0.18f;
+        if (above < 48 * 48 * 2 * 4 / 10 || above > 48 * 48 * 2 * 6 / 10)
+            fail_msg("power %s, exposure %g: %d pixels are above the grey", powers[i], found[i], above);
+    }
+    assert_true(found[0] > 900.0 * found[1] && found[0] < 1100.0 * found[1]);
+    assert_true(found[1] > 1.95 * found[2] && found[1] < 2.05 * found[2]);
+    again = found[2];
+    bake(l, "--exposure auto --threads 1 --quiet");
+    scene_lab_play(l, "final", pixels, sizeof pixels / sizeof *pixels);
+    const float first = pixels[1];
+    char line[64];
+    (void)snprintf(line, sizeof line, "--exposure %.17g --quiet", again);
+    bake(l, line);
+    scene_lab_play(l, "final", pixels, sizeof pixels / sizeof *pixels);
+    assert_true(fabsf(pixels[1] - first) < 1e-4f);
+}
+
 static int set_up(void **state) {
     static const double half[3] = {1.0, 1.0, 1.0};
     scene_lab_set_up(state);
@@ -171,6 +209,7 @@ int main(void) {
         cmocka_unit_test(the_figures_are_the_same_with_any_number_of_threads),
         cmocka_unit_test(black_and_white_pictures_are_warned_of_with_the_reason),
         cmocka_unit_test(a_suggested_exposure_shows_the_picture),
+        cmocka_unit_test(an_automatic_exposure_follows_the_light),
     };
     return cmocka_run_group_tests(tests, set_up, scene_lab_tear_down);
 }

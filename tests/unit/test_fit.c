@@ -207,6 +207,7 @@ static void all_but_the_quality_block_stays_byte_for_byte(void **unused) {
         {"my_quality: { a = 1; };\n", "my_quality: { a = 1; };\nquality: { tile = 16; };\n"},
         {"name = \"x\"", "name = \"x\"\nquality: { tile = 16; };\n"},
         {"", "quality: { tile = 16; };\n"},
+        {"quality = \"auto\"; # chosen\n", "quality = { tile = 16; }; # chosen\n"},
     };
     (void)unused;
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
