@@ -195,7 +195,7 @@ static const scene_quality default_quality = {.photons = 17000,
                                               .antialias = 1,
                                               .antialias_contrast = 0.06,
                                               .light_samples = 16,
-                                              .sky_samples = 16,
+                                              .sky_samples = 8,
                                               .specular_depth = 8,
                                               .caustics = true};
 

@@ -1,4 +1,4 @@
-/* Pass 3: direct light: hard shadows of points and directions, soft ones of surfaces and the sky. METHODS.md P, step 2, in radiometric
+/* Pass 3: direct light: hard shadows of points and directions, soft ones of surfaces. METHODS.md P, step 2, in radiometric
  * units. */
 
 /* Fraction of a light's intensity that goes into direction -l (l: unit, towards the light). glTF KHR_lights_punctual. */
@@ -237,47 +237,45 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, global const vit_emitter *e
 }
 #endif
 
-/* Adds the light of one of the fixed sets of points: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and each copy another again. */
-static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first, li hit,
-                                   LIT_PARAMETERS WORK_PASSED)
+/* Adds the light of one of the fixed sets of points, which are directions with `sky`: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and
+ * each copy another again. own: the samples' triangles. */
+static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first, li own, uint copy,
+                                   lit_sample *s WORK_PASSED)
 {
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
-    uint copy = round / layers;
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
     li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride;
 #if VIT_WITH(AREA_LIGHTS)
     if (!sky)
-        lit_by_near(RAY_SCENE, emitters, points, set, L_AS_INT(L_LOAD(hit_triangle + first)), &s WORK_PASS);
+        lit_by_near(RAY_SCENE, emitters, points, set, own, s WORK_PASS);
 #endif
     for (uint i = 0; i < points; i++, at += stride) {
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
         lf d = L_F(3e38f), e;
         if (sky)
-            e = l_max(lv3_dot(s.n, l), L_F(0));
+            e = l_max(lv3_dot(s->n, l), L_F(0));
         else {
             /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a sphere of it.
              * The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
             lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
-            to = lv3_sub(to, s.p);
+            to = lv3_sub(to, s->p);
             lf d2 = l_max(lv3_dot(to, to), L_F(least2));
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
-            e = l_div(l_max(lv3_dot(s.n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
+            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
             e = l_sel(L_LT(d2, L_GATHER(lf, p + 7, at)), L_F(0), e);
         }
-        li lit = s.hit & L_GT(e, L_F(0));
+        li lit = s->hit & L_GT(e, L_F(0));
         if (!l_any(lit))
             continue;
-        ray_packet r = ray_make(s.p, l);
+        ray_packet r = ray_make(s->p, l);
         WORK_LANES(shadow_rays, lit);
         lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
         WORK_TRACED(r);
         lv3 power = lv3_set(L_GATHER(lf, p + 8, at), L_GATHER(lf, p + 9, at), L_GATHER(lf, p + 10, at));
-        lit_add(&s, l, l_sel(lit, e, L_F(0)), power);
+        lit_add(s, l, l_sel(lit, e, L_F(0)), power);
     }
-    lit_store(scene, &s, first, albedo, gloss, direct);
 }
 
 #if VIT_WITH(AREA_LIGHTS)
@@ -290,22 +288,9 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
     if (!l_any(hit))
         return;
     WORK_BEGIN
-    lit_by_emitters(RAY_SCENE, ROUND, emitters, scene->area_samples, 0, first, hit, LIT WORK_PASS);
-    WORK_END
-}
-#endif
-
-#if VIT_WITH(SKY_LIGHT)
-kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, LIT_PARAMETERS WORK_PARAMETERS)
-{
-    uint first = (uint)get_global_id(0) * VIT_LANES;
-    if (first >= scene->samples)
-        return;
-    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
-    if (!l_any(hit))
-        return;
-    WORK_BEGIN
-    lit_by_emitters(RAY_SCENE, ROUND, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, hit, LIT WORK_PASS);
+    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    lit_by_emitters(RAY_SCENE, emitters, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)), round / layers, &s WORK_PASS);
+    lit_store(scene, &s, first, albedo, gloss, direct);
     WORK_END
 }
 #endif

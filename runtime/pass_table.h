@@ -38,9 +38,10 @@
     X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct),                                                         \
       ARGS_RAYS, ARGS_ROUND, B(emitters), B(hit_triangle), B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct),   \
       ARGS_WORK)                                                                                                              \
-    X(sky_light, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct),                                                            \
-      ARGS_RAYS, ARGS_ROUND, B(emitters), B(hit_triangle), B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct),   \
-      ARGS_WORK)                                                                                                              \
+    X(sky_light, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(skylight),                                                          \
+      ARGS_RAYS, ARGS_ROUND, B(emitters), B(hit_triangle), B(position), B(normal), B(rays), B(gloss), B(skylight), ARGS_WORK) \
+    X(sky_filter, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct),                                                           \
+      B(scene), B(position), B(normal), B(albedo), B(gloss), B(skylight), B(direct))                                          \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters),                                            \
       B(scene), V(round), B(masks), B(counters))                                                                              \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters),                                              \

@@ -63,6 +63,7 @@ typedef struct vit_limits {
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \
     X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 8)                                                                          \
+    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(GLOSS) ? 24 : 12))                                   \
     X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                          \
     X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                               \
     X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                                \

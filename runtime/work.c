@@ -16,7 +16,8 @@
     X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
     X(area_light, (LIT + sizeof(vit_emitter) * z->area_samples) * z->samples)                                                  \
-    X(sky_light, (LIT + sizeof(vit_emitter) * z->sky_samples) * z->samples)                                                    \
+    X(sky_light, (4 + z->position + 4 + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) * z->samples) \
+    X(sky_filter, (z->position + 4 + 4 + z->gloss / 2 + z->skylight + 12 + 12) * z->samples)                                   \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                                                         \
     X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
@@ -60,6 +61,7 @@ typedef struct sizes {
     uint64_t activate;             /* bytes a block of samples: active, edges, split */
     uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
+    uint64_t skylight;             /* bytes a sample: of the sky's irradiance, and of what the lobe reflects of it */
     uint64_t zones, baked, cell;   /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
 
@@ -100,6 +102,7 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
     z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.gloss ? 4u : 0u);
     z.area_samples = s->area_samples;
     z.sky_samples = s->sky_samples;
+    z.skylight = z.gloss ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;

@@ -105,7 +105,7 @@ static void what_is_left_out_has_its_default(void **state) {
     assert_true(is(s.ambient, 0, 0, 0) && !s.sky.image[0] && s.sky.scale == 1.0 && s.sky.rotate == 0.0 && !s.sky.light);
     const scene_quality *q = &s.quality;
     assert_true(q->antialias == 1 && q->antialias_contrast == 0.06 && !q->tent && q->light_samples == 16 &&
-                q->sky_samples == 16);
+                q->sky_samples == 8);
     assert_true(q->specular_depth == 8 && q->caustics);
     scene_free(&s);
 }
