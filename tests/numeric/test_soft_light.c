@@ -105,7 +105,8 @@ static void a_rectangle_lights_as_lambert_says(void **state) {
 }
 
 /* A box whose walls all shine: L + albedo L everywhere, in its corners too, where points are too far apart and rays find the
- * walls. */
+ * walls. The picture's diagonals look at the very edges of the box, where a sample lies in two walls at once: no pixels of
+ * these. */
 static void a_box_whose_walls_shine_is_lit_alike_up_to_its_corners(void **state) {
     static float pixels[FLOATS];
     FILE *f = scene_lab_create(*state, "box.mtl");
@@ -119,16 +120,22 @@ static void a_box_whose_walls_shine_is_lit_alike_up_to_its_corners(void **state)
     (void)fclose(f);
     render(*state, "box.obj", "", 64, pixels);
     double square = 0, sum = 0, rim = 0;
+    int count = 0, rim_count = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
-        const double ratio = ((double)pixels[4 * i] - 1) / ALBEDO;
-        const bool at_rim = i % SIDE < 2 || i % SIDE >= SIDE - 2;
-        square += pow(ratio - 1, 2) / (SIDE * SIDE);
-        sum += ratio / (SIDE * SIDE);
-        rim += at_rim ? ratio / (4 * SIDE) : 0;
+        const int x = i % SIDE, y = i / SIDE;
+        const double error = ((double)pixels[4 * i] - 1) / ALBEDO - 1;
+        const bool at_rim = x < 2 || x >= SIDE - 2;
+        if (x == y || x == SIDE - 1 - y)
+            continue;
+        square += error * error;
+        sum += error;
+        rim += at_rim ? error : 0;
+        count++;
+        rim_count += at_rim;
     }
-    catalogue_row("soft light", "box whose walls shine, 64 points: pixels", sqrt(square), 0.15, "relative rms");
-    catalogue_row("soft light", "box whose walls shine, 64 points: mean", fabs(sum - 1), 0.005, "relative");
-    catalogue_row("soft light", "box whose walls shine, 64 points: at the rim", fabs(rim - 1), 0.03, "relative");
+    catalogue_row("soft light", "box whose walls shine, 64 points: pixels", sqrt(square / count), 0.15, "relative rms");
+    catalogue_row("soft light", "box whose walls shine, 64 points: mean", fabs(sum / count), 0.0015, "relative");
+    catalogue_row("soft light", "box whose walls shine, 64 points: at the rim", fabs(rim / rim_count), 0.02, "relative");
 }
 
 static void an_even_sky_lights_a_plane_by_pi(void **state) {
