@@ -20,7 +20,8 @@ static int vit_opencl_is(uint32_t index, int gpu) {
 const char *vit_device_name(uint32_t index, vit_text *why) {
     static const char unnamed[] = "";
     vit_text unused = {""};
-    const char *name = index == VIT_DEVICE_HOST ? vit_host_name(why ? why : &unused) : vit_opencl_name(index, why ? why : &unused);
+    const char *name =
+        index == VIT_DEVICE_HOST ? vit_host_name(why ? why : &unused) : vit_opencl_name(index, why ? why : &unused);
     return name && !why ? unnamed : name;
 }
 
@@ -69,7 +70,7 @@ static void list_devices(vit_text *why) {
         snprintf(why->text + n, sizeof why->text - n, "host%s", without ? without : "");
 }
 
-/* Digits only; beyond 32 bits it is no device's. */
+/* Digits only; beyond 32 bits it is no number of a device, but a name that none has. */
 static int number(const char *text, uint32_t *out) {
     uint64_t value = 0;
     if (!*text)
@@ -79,8 +80,8 @@ static int number(const char *text, uint32_t *out) {
             return 0;
         value = value < VIT_DEVICE_HOST ? value * 10 + (uint64_t)(*text - '0') : value;
     }
-    *out = value < VIT_DEVICE_HOST ? (uint32_t)value : VIT_DEVICE_HOST - 1;
-    return 1;
+    *out = value < VIT_DEVICE_HOST ? (uint32_t)value : VIT_DEVICE_HOST;
+    return value < VIT_DEVICE_HOST;
 }
 
 vit_status vit_device_find(const char *name, uint32_t *index, vit_text *why) {
@@ -104,7 +105,8 @@ vit_status vit_device_find(const char *name, uint32_t *index, vit_text *why) {
     }
     if (best > 0 && unlike == 0)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, best > 0 ? "device '%.60s' may be one of several; there are: " : "there is no device '%.60s'; there are: ", name);
+    snprintf(why->text, sizeof why->text,
+             best > 0 ? "device '%.60s' may be one of several; there are: " : "there is no device '%.60s'; there are: ", name);
     list_devices(why);
     return best > 0 || !*name ? VIT_USAGE : VIT_FAILED;
 }

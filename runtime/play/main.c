@@ -13,19 +13,39 @@
 
 #define PAGE 4096 /* devices that share host memory want the framebuffer on a page */
 
-/* The one variable of the program: the signal, Ctrl-C's or SIGTERM, read between frames. */
+/* The variables of the program: the signal, Ctrl-C's or SIGTERM, read between frames, and when it came, for handlers alone. */
 static volatile sig_atomic_t stop_requested;
+static struct timespec requested_at;
+
+static void on_stop(void (*handler)(int), int flags) {
+    struct sigaction stop = {.sa_handler = handler, .sa_flags = flags};
+    (void)sigemptyset(&stop.sa_mask);
+    (void)sigaddset(&stop.sa_mask, SIGINT);
+    (void)sigaddset(&stop.sa_mask, SIGTERM);
+    (void)sigaction(SIGINT, &stop, NULL);
+    (void)sigaction(SIGTERM, &stop, NULL);
+}
+
+/* timeout(1) and others signal a process and then its group: so a second signal that comes at once, within 1 to 2 s, is the
+ * first one over again. A third is not. */
+static void request_again(int number) {
+    on_stop(SIG_DFL, 0);
+    struct timespec now;
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    if (now.tv_sec - requested_at.tv_sec >= 2) /* 1 to 2 s are over */
+        (void)raise(number);                   /* comes when this returns */
+}
 
 static void request_stop(int number) {
     stop_requested = number;
+    (void)clock_gettime(CLOCK_MONOTONIC, &requested_at);
+    on_stop(request_again, SA_RESTART); /* the repetition interrupts nothing more */
 }
 
-/* The first Ctrl-C ends after the frame at hand; a second one, should a device or a pipe hang, ends at once. */
+/* The first Ctrl-C ends after the frame at hand; a later one, should a device or a pipe hang, ends at once. */
 static void catch_signals(void) {
-    struct sigaction stop = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
     struct sigaction ignore = {.sa_handler = SIG_IGN}; /* a closed pipe is an error of write(), with a text */
-    (void)sigaction(SIGINT, &stop, NULL);
-    (void)sigaction(SIGTERM, &stop, NULL);
+    on_stop(request_stop, 0);
     (void)sigaction(SIGPIPE, &ignore, NULL);
     (void)sigaction(SIGXFSZ, &ignore, NULL); /* likewise a file that gets larger than it may */
 }
@@ -244,6 +264,16 @@ static vit_status check_golden(player *p, vit_text *why) {
     return golden_read(o->golden, &frames, p->golden, why);
 }
 
+/* Options of the device host, where another one plays by default. */
+static vit_status check_host_options(const player *p, vit_text *why) {
+    const play_options *o = p->options;
+    vit_text name = {""};
+    const char *option = options_of_host(o);
+    if (option == NULL || p->info.device == VIT_DEVICE_HOST || vit_device_name(p->info.device, &name) == NULL)
+        return VIT_OK;
+    return play_fail(why, VIT_USAGE, "%s is for --device host, not for the default, %.300s", option, name.text);
+}
+
 static vit_status run_pack(player *p, vit_text *why) {
     const play_options *o = p->options;
     if (o->size != NULL)
@@ -267,6 +297,8 @@ static vit_status run_pack(player *p, vit_text *why) {
     status = device_choose(o, &p->info, &note, why);
     if (!o->explain)
         tell_note(&note);
+    if (status == VIT_OK)
+        status = check_host_options(p, why);
     if (status == VIT_OK)
         status = require(p, why);
     if (status == VIT_OK && o->explain) {

@@ -53,9 +53,9 @@ static const option table[] = {
          "play on this device: a part of its name (pocl, nvidia), gpu, cpu, host, or its number in --list-devices, which may "
          "change "
          "(default: OpenCL's first; host if that cannot play)"),
-    NUMBER("threads", threads, 1, 256, "of the device host (default: one a processor); changes no bit"),
+    NUMBER("threads", threads, 1, 256, "of the device host, which must play (default: one a processor); changes no bit"),
     WORD("host-isa", "NAME", option_set_host_isa,
-         "instructions for the device host: baseline, avx2, avx512 (default: the best); changes no bit"),
+         "instructions for the device host, which must play: baseline, avx2, avx512 (default: the best); changes no bit"),
     WORD("lanes", "N", option_set_lanes, "samples a work-item: 1, 8, 16, or 0 for what suits; changes no bit"),
     WORD("group", "N", option_set_group,
          "work-items a work-group: a power of two up to 256, or 0 for what suits; changes no bit"),
@@ -135,6 +135,10 @@ static bool has_one_end(void) {
            out.st_dev == err.st_dev && out.st_ino == err.st_ino;
 }
 
+const char *options_of_host(const play_options *o) {
+    return o->threads != 0 ? "--threads" : o->host_isa != NULL ? "--host-isa" : NULL;
+}
+
 /* Options that exclude each other. */
 static vit_status check(const play_options *o, vit_text *why) {
     bool to_stdout = sink_uses_stdout(o->sink, o->target);
@@ -145,9 +149,8 @@ static vit_status check(const play_options *o, vit_text *why) {
     if (!o->sink->any_format && o->format != VIT_FORMAT_XRGB8888)
         return play_fail(why, VIT_USAGE, "--out %s takes --format xrgb8888 only, got %s", o->sink->name,
                          options_format_name(o->format));
-    if (o->device != NULL && strcmp(o->device, "host") != 0 && (o->threads != 0 || o->host_isa != NULL))
-        return play_fail(why, VIT_USAGE, "%s is for --device host, not for '%s'", o->threads != 0 ? "--threads" : "--host-isa",
-                         o->device);
+    if (o->device != NULL && strcmp(o->device, "host") != 0 && options_of_host(o) != NULL)
+        return play_fail(why, VIT_USAGE, "%s is for --device host, not for '%s'", options_of_host(o), o->device);
     if (o->trace && (o->verify || o->hash || o->report || o->pace || o->sink != sink_at(0)))
         return play_fail(why, VIT_USAGE, "--trace plays alone: without --verify, --hash, --report, --fps and --out");
     if (o->trace && (o->report_file != NULL || o->has_budget || options_counts(o)))

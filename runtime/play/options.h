@@ -38,6 +38,8 @@ void options_help(FILE *to);
 
 /* Is work to be counted; are frames wanted for anything but their work? */
 bool options_counts(const play_options *o);
+/* The first option given that is of the device host alone; NULL: none. */
+const char *options_of_host(const play_options *o);
 bool options_plays(const play_options *o);
 
 /* Lower-case name, as --format takes it; name, as --view does. */

@@ -1,5 +1,6 @@
 #include "outputs.h"
 #include "failure.h"
+#include "sinks/output.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -7,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define PATH_SIZE 4096  /* Linux's own limit */
 #define PARTIAL ".part" /* as sinks/output.c names what it renames */
 
 /* A file that is there, or the place where it would be. */
@@ -26,12 +26,14 @@ enum { MOST = 5 };
 
 static bool find_place(const char *path, place *out) {
     struct stat s;
-    char folder[PATH_SIZE];
-    const char *slash = strrchr(path, '/');
+    char folder[OUTPUT_PATH_SIZE], target[OUTPUT_PATH_SIZE];
     *out = (place){.there = stat(path, &s) == 0};
     if (!out->there) {
-        (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path) + 1 : 1, slash != NULL ? path : ".");
-        (void)snprintf(out->name, sizeof out->name, "%s", slash != NULL ? slash + 1 : path);
+        output_follow(path, target);
+        const char *slash = strrchr(target, '/');
+        (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - target) + 1 : 1,
+                       slash != NULL ? target : ".");
+        (void)snprintf(out->name, sizeof out->name, "%.255s", slash != NULL ? slash + 1 : target);
         if (stat(folder, &s) != 0)
             return false;
     }
@@ -106,28 +108,28 @@ static vit_status try_new(const char *path, const char *asked, vit_text *why) {
 /* `in_place`: the file is emptied and written; else it is replaced by one of its folder. */
 static vit_status try_file(const char *path, bool in_place, vit_text *why) {
     struct stat s;
-    char partial[PATH_SIZE + sizeof PARTIAL];
+    char target[OUTPUT_PATH_SIZE], partial[OUTPUT_PATH_SIZE + sizeof PARTIAL];
     const bool there = stat(path, &s) == 0, plain = there && S_ISREG(s.st_mode);
-    if (strlen(path) >= PATH_SIZE)
-        return cannot(path, ENAMETOOLONG, why);
+    if (!there && errno != ENOENT) /* links in a circle, too */
+        return cannot(path, errno, why);
     if (there && S_ISDIR(s.st_mode))
         return play_fail(why, VIT_FAILED, "%.300s: is a folder", path);
     if (there && access(path, W_OK) != 0)
         return cannot(path, errno, why);
     if (plain && (s.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0) /* root may, but is not meant to */
         return play_fail(why, VIT_FAILED, "%.300s: is read-only", path);
-    if (there && (in_place || !plain))
+    if (!output_replaces(path, target) || (there && in_place))
         return VIT_OK;
-    (void)snprintf(partial, sizeof partial, "%s%s", path, in_place ? "" : PARTIAL);
+    (void)snprintf(partial, sizeof partial, "%s%s", target, in_place ? "" : PARTIAL);
     return try_new(partial, path, why);
 }
 
 /* The folder, or the nearest one above it that is there. */
 static vit_status try_folder(const char *path, vit_text *why) {
-    char probe[PATH_SIZE + 32];
+    char probe[OUTPUT_PATH_SIZE + 32];
     struct stat s;
     size_t length = strlen(path);
-    if (length >= PATH_SIZE)
+    if (length >= OUTPUT_PATH_SIZE)
         return cannot(path, ENAMETOOLONG, why);
     (void)snprintf(probe, sizeof probe, "%s", path);
     while (stat(probe[0] != '\0' ? probe : ".", &s) != 0) {
@@ -148,8 +150,9 @@ static vit_status try_folder(const char *path, vit_text *why) {
 
 /* Whoever replaces a file writes a partial one beside it. */
 static vit_status check_replaced(const play_options *o, const char *option, const char *path, vit_text *why) {
-    char partial[PATH_SIZE + sizeof PARTIAL];
-    (void)snprintf(partial, sizeof partial, "%.*s" PARTIAL, PATH_SIZE - 1, path);
+    char target[OUTPUT_PATH_SIZE], partial[OUTPUT_PATH_SIZE + sizeof PARTIAL];
+    output_follow(path, target);
+    (void)snprintf(partial, sizeof partial, "%s" PARTIAL, target);
     vit_status status = check_apart(o, option, path, why);
     return status == VIT_OK ? check_apart(o, option, partial, why) : status;
 }
@@ -157,7 +160,7 @@ static vit_status check_replaced(const play_options *o, const char *option, cons
 /* Each frame's own file; sinks into folders are named as their files end. */
 static vit_status check_frame_files(const player *p, vit_text *why) {
     const play_options *o = p->options;
-    char path[PATH_SIZE];
+    char path[OUTPUT_PATH_SIZE];
     vit_status status = try_folder(o->target, why);
     for (uint32_t i = p->first; i < p->end && status == VIT_OK; i++) {
         (void)snprintf(path, sizeof path, "%s/frame_%05u.%s", o->target, i, o->sink->name);

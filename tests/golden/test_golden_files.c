@@ -6,10 +6,15 @@
 #include "test_packs.h"
 #include "vitrine.h"
 
+#include <fcntl.h>
+
 #define FOLDER TEST_PACKS "/golden"
 #define GOLDEN FOLDER "/a.golden"
 #define CHANGED FOLDER "/changed.golden"
 #define JSON FOLDER "/out.json"
+#define LINK FOLDER "/link"
+#define SECOND FOLDER "/second"
+#define SCRIPT FOLDER "/run.sh"
 
 static tool_run r;
 static char whole[TOOL_TEXT], file[TOOL_TEXT];
@@ -23,7 +28,7 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     (void)state;
-    static const char *const left[] = {GOLDEN, CHANGED, JSON};
+    static const char *const left[] = {GOLDEN, CHANGED, JSON, LINK, SECOND, SCRIPT};
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
         (void)unlink(left[i]);
     return rmdir(FOLDER);
@@ -223,6 +228,89 @@ static void frames_and_text_do_not_share_a_pipe(void **state) {
     tool_succeeds(&r);
 }
 
+static void is_a_link(const char *path) {
+    struct stat s;
+    assert_int_equal(lstat(path, &s), 0);
+    assert_true(S_ISLNK(s.st_mode));
+}
+
+/* A relative link to a link to a file, which is there or is not yet. */
+static void links_are_followed(void **state) {
+    (void)state;
+    static const char *const options[] = {"--write-golden ", "--write-work-budget ", "--report=", "--out raw:"};
+    char line[128];
+    assert_int_equal(symlink("second", LINK), 0);
+    assert_int_equal(symlink("changed.golden", SECOND), 0);
+    for (size_t i = 0; i < sizeof options / sizeof options[0]; i++)
+        for (int there = 0; there < 2; there++) {
+            static const char old[] = "old";
+            (void)unlink(CHANGED);
+            if (there)
+                test_packs_write(CHANGED, old, sizeof old - 1);
+            (void)snprintf(line, sizeof line, "%s" LINK, options[i]);
+            play(line);
+            tool_succeeds(&r);
+            is_a_link(LINK);
+            is_a_link(SECOND);
+            struct stat s;
+            assert_int_equal(stat(CHANGED, &s), 0);
+            assert_true(s.st_size > (off_t)sizeof old);
+        }
+    refuses("--write-golden " LINK " --report=" CHANGED, VIT_USAGE, "would write the same file");
+    (void)unlink(CHANGED);
+    refuses("--write-golden " LINK " --report=" CHANGED, VIT_USAGE, "would write the same file");
+    (void)unlink(SECOND);
+    assert_int_equal(symlink("link", SECOND), 0); /* in a circle */
+    play("--write-golden " LINK);
+    assert_int_equal(r.code, VIT_FAILED);
+    is_a_link(LINK);
+    (void)unlink(SECOND);
+    (void)unlink(LINK);
+}
+
+/* Plays in a shell, which sets stdout up. */
+static void play_in_shell(const char *options) {
+    FILE *f = fopen(SCRIPT, "w");
+    assert_non_null(f);
+    (void)fprintf(f, TOOL_PLAY " %s --quiet --device host %s\n", test_pack("list"), options);
+    assert_int_equal(fclose(f), 0);
+    tool(&r, "sh " SCRIPT);
+    (void)unlink(SCRIPT);
+    tool_succeeds(&r);
+}
+
+/* LINK is a link such as /dev/stdout. */
+static void what_is_no_file_or_is_stdout_is_written_to_in_place(void **state) {
+    (void)state;
+    play("--write-golden " GOLDEN);
+    load(GOLDEN, whole);
+    assert_int_equal(symlink("/proc/self/fd/1", LINK), 0);
+    play("--write-golden " LINK); /* stdout is a file without a name */
+    tool_succeeds(&r);
+    assert_string_equal(r.out, whole);
+    play_in_shell("--hash --write-golden " LINK " > " CHANGED);
+    load(CHANGED, file);
+    assert_int_equal(strlen(file), strlen(whole) + 3 * 24); /* the hashes' lines, too */
+    assert_non_null(strstr(file, whole));
+    play_in_shell("--write-golden " LINK " | cat > " CHANGED);
+    load(CHANGED, file);
+    assert_string_equal(file, whole);
+    is_a_link(LINK);
+    (void)unlink(LINK);
+    assert_int_equal(mkfifo(LINK, 0666), 0);
+    const int pipe_end = open(LINK, O_RDWR | O_CLOEXEC);
+    play("--write-golden " LINK);
+    tool_succeeds(&r);
+    (void)memset(file, 0, sizeof file);
+    assert_int_equal(read(pipe_end, file, sizeof file - 1), strlen(whole));
+    (void)close(pipe_end);
+    assert_string_equal(file, whole);
+    struct stat s;
+    assert_int_equal(lstat(LINK, &s), 0);
+    assert_true(S_ISFIFO(s.st_mode));
+    (void)unlink(LINK);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_file_has_the_hashes_of_the_frames_and_every_device_agrees),
@@ -231,6 +319,8 @@ int main(void) {
         cmocka_unit_test(hashes_of_other_frames_views_formats_and_sizes_are_not_compared),
         cmocka_unit_test(a_file_that_is_no_golden_file_is_bad_input_with_its_line),
         cmocka_unit_test(options_that_make_no_sense_are_refused),
+        cmocka_unit_test(links_are_followed),
+        cmocka_unit_test(what_is_no_file_or_is_stdout_is_written_to_in_place),
         cmocka_unit_test(tables_and_messages_in_one_pipe_keep_their_lines),
         cmocka_unit_test(frames_and_text_do_not_share_a_pipe),
     };

@@ -39,10 +39,27 @@ static void a_device_or_instruction_set_that_there_is_not_is_refused(void **stat
     tool_refuses(&r, "vitrine-play", VIT_FAILED, "there is no device 'hots'");
     tool(&r, TOOL_PLAY " %s --device host --host-isa z80", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "baseline");
+    tool(&r, TOOL_PLAY " %s --device 4294967296", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_FAILED, "there is no device '4294967296'");
     tool(&r, TOOL_PLAY " %s --device host --threads 0", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "--threads");
     tool(&r, TOOL_PLAY " %s --device host --wide-divide", test_pack("33x47"));
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "wide_divide");
+}
+
+/* Nothing that was asked for is left out in silence. */
+static void options_of_host_want_host_to_play(void **state) {
+    (void)state;
+    static const char *const options[] = {"--threads", "--threads 2", "--host-isa", "--host-isa avx9"};
+    for (size_t i = 0; i < 4; i += 2) {
+        tool(&r, TOOL_PLAY " %s %s", test_pack("33x47"), options[i + 1]);
+        tool_refuses(&r, "vitrine-play", VIT_USAGE, options[i]);
+        assert_non_null(strstr(r.err, "is for --device host, not for the default, "));
+    }
+    tool(&r, NO_OPENCL TOOL_PLAY " %s --verify --threads 2 --host-isa baseline", test_pack("33x47"));
+    tool_succeeds(&r);
+    tool(&r, NO_OPENCL TOOL_PLAY " %s --quiet --host-isa avx9", test_pack("33x47"));
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "baseline");
 }
 
 static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state) {
@@ -52,8 +69,8 @@ static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state)
     size_t size[2];
     void *host = test_packs_load(test_pack("33x47"), &size[0]);
     for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
-        tool(&r, "%s" TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --no-check --threads 3 %s %s", ways[k][0], test_packs[i].input,
-             ways[k][1], test_packs[i].options);
+        tool(&r, "%s" TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --no-check --threads 3 %s %s", ways[k][0],
+             test_packs[i].input, ways[k][1], test_packs[i].options);
         tool_succeeds(&r);
         void *other = test_packs_load(TEST_PACKS "/host.vit", &size[1]);
         assert_int_equal(size[0], size[1]);
@@ -186,6 +203,7 @@ int main(void) {
         cmocka_unit_test(host_is_listed_with_and_without_opencl),
         cmocka_unit_test(without_opencl_the_player_takes_host_and_says_so),
         cmocka_unit_test(a_device_or_instruction_set_that_there_is_not_is_refused),
+        cmocka_unit_test(options_of_host_want_host_to_play),
         cmocka_unit_test(the_baker_makes_the_same_bytes_with_opencl_and_without),
         cmocka_unit_test(what_is_not_timed_has_no_kernel_compiled),
         cmocka_unit_test(two_packs_of_other_effects_are_played_in_turns),

@@ -242,6 +242,7 @@ static void values_out_of_range_are_refused_with_what_is_taken(void **state) {
     refuses(*state, "nowhere.vit --threads 257 --device host", VIT_USAGE, "1 to 256");
     refuses(*state, "nowhere.vit --threads 2 --device pocl", VIT_USAGE, "--threads is for --device host");
     refuses(*state, "nowhere.vit --host-isa avx2 --device 0", VIT_USAGE, "--host-isa is for --device host");
+    refuses(*state, "nowhere.vit --host-isa avx2 --threads 2 --device gpu", VIT_USAGE, "--threads is for --device host");
     refuses(*state, "nowhere.vit --device -1", VIT_USAGE, "--device");
     refuses(*state, "nowhere.vit --max-nodes 0", VIT_USAGE, "--max-nodes");
     refuses(*state, "nowhere.vit --max-list ten", VIT_USAGE, "--max-list");

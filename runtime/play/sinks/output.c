@@ -9,8 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define PATH_SIZE 4096 /* longer paths are refused: Linux's own limit */
-
 static vit_status failed(const char *path, int error, vit_text *why) {
     if (error == EPIPE)
         return play_fail(why, VIT_FAILED, "%s: the reader closed the pipe", path);
@@ -64,7 +62,7 @@ static vit_status make_one(const char *path, vit_text *why) {
 }
 
 vit_status output_folder(const char *path, vit_text *why) {
-    char partial[PATH_SIZE];
+    char partial[OUTPUT_PATH_SIZE];
     size_t length = strlen(path);
     if (length >= sizeof partial)
         return failed(path, ENAMETOOLONG, why);
@@ -93,8 +91,8 @@ static vit_status write_all(const char *path, const void *bytes, size_t size, vi
 }
 
 static vit_status write_and_rename(const char *path, const void *bytes, size_t size, vit_text *why) {
-    char partial[PATH_SIZE + sizeof ".part"];
-    if (strlen(path) >= PATH_SIZE)
+    char partial[OUTPUT_PATH_SIZE + sizeof ".part"];
+    if (strlen(path) >= OUTPUT_PATH_SIZE)
         return failed(path, ENAMETOOLONG, why);
     (void)snprintf(partial, sizeof partial, "%s.part", path);
     vit_status status = write_all(partial, bytes, size, why);
@@ -107,17 +105,62 @@ static vit_status write_and_rename(const char *path, const void *bytes, size_t s
 
 vit_status output_frame_file(const char *folder, uint32_t index, const char *extension, const void *bytes, size_t size,
                              vit_text *why) {
-    char path[PATH_SIZE];
+    char path[OUTPUT_PATH_SIZE];
     int length = snprintf(path, sizeof path, "%s/frame_%05u.%s", folder, index, extension);
     if (length < 0 || (size_t)length >= sizeof path)
         return failed(folder, ENAMETOOLONG, why);
     return write_and_rename(path, bytes, size, why);
 }
 
+void output_follow(const char *path, char target[OUTPUT_PATH_SIZE]) {
+    enum { MOST_LINKS = 40 }; /* Linux's own limit */
+    char link[OUTPUT_PATH_SIZE];
+    (void)snprintf(target, OUTPUT_PATH_SIZE, "%s", path);
+    for (int i = 0; i < MOST_LINKS; i++) {
+        const ssize_t length = readlink(target, link, sizeof link - 1);
+        if (length < 0) /* no link, or nothing there */
+            return;
+        link[length] = '\0';
+        const char *slash = link[0] != '/' ? strrchr(target, '/') : NULL; /* relative to the link's folder */
+        const size_t folder = slash != NULL ? (size_t)(slash - target) + 1 : 0;
+        if (folder + (size_t)length >= OUTPUT_PATH_SIZE)
+            break;
+        memcpy(target + folder, link, (size_t)length + 1);
+    }
+    (void)snprintf(target, OUTPUT_PATH_SIZE, "%s", path); /* links in a circle: opening it says so */
+}
+
+static bool same(const struct stat *a, const struct stat *b) {
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* stdout's or stderr's descriptor if that is the file; else -1. */
+static int standard_output(const struct stat *file) {
+    struct stat s;
+    for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fstat(fd, &s) == 0 && same(&s, file))
+            return fd;
+    return -1;
+}
+
+bool output_replaces(const char *path, char target[OUTPUT_PATH_SIZE]) {
+    struct stat s, t;
+    output_follow(path, target);
+    if (stat(path, &s) != 0)
+        return errno == ENOENT;
+    return S_ISREG(s.st_mode) && standard_output(&s) < 0 && stat(target, &t) == 0 && same(&s, &t);
+}
+
 vit_status output_file(const char *path, const void *bytes, size_t size, vit_text *why) {
     struct stat s;
-    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) ? write_all(path, bytes, size, why)
-                                                      : write_and_rename(path, bytes, size, why);
+    char target[OUTPUT_PATH_SIZE];
+    if (output_replaces(path, target))
+        return write_and_rename(target, bytes, size, why);
+    const output standard = {.fd = stat(path, &s) == 0 ? standard_output(&s) : -1, .path = path};
+    if (standard.fd < 0)
+        return write_all(path, bytes, size, why);
+    (void)fflush(NULL); /* what was printed comes first */
+    return output_write(&standard, bytes, size, why);
 }
 
 vit_status output_flush_stdout(vit_text *why) {

@@ -5,6 +5,8 @@
 #include "vitrine.h"
 #include <stdbool.h>
 
+#define OUTPUT_PATH_SIZE 4096 /* longer paths are refused: Linux's own limit */
+
 /* A file, or stdout, that is written front to back. */
 typedef struct output {
     int fd;
@@ -23,7 +25,14 @@ vit_status output_folder(const char *path, vit_text *why);
 vit_status output_frame_file(const char *folder, uint32_t index, const char *extension, const void *bytes, size_t size,
                              vit_text *why);
 
-/* Writes a whole file in the same way; what is there and is no plain file (a device, a pipe) is written to in place. */
+/* Where `path` leads if it is a symbolic link, or one to others: a link is followed, not replaced, also to a file that is not
+ * there yet. Else `path` itself. */
+void output_follow(const char *path, char target[OUTPUT_PATH_SIZE]);
+/* Does output_file() replace `target`, where `path` leads? Else it writes to what is there: a device, a pipe, a file without a
+ * name, or what is this program's stdout or stderr (/dev/stdout), which would go on into a file without a name. */
+bool output_replaces(const char *path, char target[OUTPUT_PATH_SIZE]);
+
+/* Writes a whole file in the same way, if it is a plain one. */
 vit_status output_file(const char *path, const void *bytes, size_t size, vit_text *why);
 
 /* Flushes what was printed to stdout and says whether all of it arrived. */
