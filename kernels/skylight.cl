@@ -63,16 +63,19 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
     lu code = L_LOAD(normal + first);
     s.n = l_decode_normal(code);
     s.matt = s.glossy = lv3_set(L_F(0), L_F(0), L_F(0));
-    lf weights = L_F(0);
+    lf weights = L_F(0), lobe_weights = L_F(0);
     for (int dy = 0; dy < 4; dy++)
         for (int dx = 0; dx < 4; dx++) {
             li there = l_sample_at(scene, min(x + dx, right), min(y + dy, bottom));
             lv3 e = lv3_set(L_GATHER(lf, skylight, there), L_GATHER(lf, VIT_PLANE(skylight, 1, n), there), L_GATHER(lf, VIT_PLANE(skylight, 2, n), there));
-            lf w = skylight_weight(s.p, s.n, code, sample_position_of(scene, position, there), l_gather_u(normal, there), scene->ray_offset * SKYLIGHT_FLAT);
+            lu its = l_gather_u(normal, there);
+            lf w = skylight_weight(s.p, s.n, code, sample_position_of(scene, position, there), its, scene->ray_offset * SKYLIGHT_FLAT);
             w = l_sel(L_GE(e.x, L_F(0)), w, L_F(0));
             weights += w;
             s.matt = lv3_along(s.matt, e, w);
-            if (VIT_EFFECT_GLOSS) {
+            if (VIT_EFFECT_GLOSS) { /* a lobe turns twice as far as its surface: only where that does not turn */
+                w = l_sel(L_EQ(L_AS_INT(its), L_AS_INT(code)), w, L_F(0));
+                lobe_weights += w;
                 global const float *lobe = skylight + 3 * (size_t)n;
                 e = lv3_set(L_GATHER(lf, lobe, there), L_GATHER(lf, VIT_PLANE(lobe, 1, n), there), L_GATHER(lf, VIT_PLANE(lobe, 2, n), there));
                 s.glossy = lv3_along(s.glossy, e, w);
@@ -80,7 +83,7 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
         }
     lf scale = l_sel(hit, l_div(1.0f, l_max(weights, L_F(1e-30f))), L_F(0));
     s.matt = lv3_scale(s.matt, scale);
-    s.glossy = lv3_scale(s.glossy, scale);
+    s.glossy = lv3_scale(s.glossy, l_sel(hit, l_div(1.0f, l_max(lobe_weights, L_F(1e-30f))), L_F(0)));
     lit_store(scene, &s, first, albedo, gloss, direct);
 }
 #endif

@@ -148,13 +148,16 @@ void state_load(reference_state *s, const char *folder) {
         (void)fclose(f);
 }
 
-/* What lies there under the reference's name and is none is somebody's. */
-static bool is_foreign(const char *path) {
+/* What lies there under the reference's name, and is neither by its first bytes nor by its size one that was damaged, is
+ * somebody's. */
+static bool is_foreign(const char *path, size_t size) {
     char start[sizeof magic];
+    struct stat there;
     FILE *f = fopen(path, "rb");
     if (!f)
         return errno != ENOENT;
-    const bool ours = fread(start, 1, sizeof start, f) == sizeof start && memcmp(start, magic, KIND) == 0;
+    const bool ours = (fread(start, 1, sizeof start, f) == sizeof start && memcmp(start, magic, KIND) == 0) ||
+                      (fstat(fileno(f), &there) == 0 && there.st_size == (off_t)size);
     (void)fclose(f);
     return !ours;
 }
@@ -171,7 +174,7 @@ vit_status state_save(const reference_state *s, const char *folder, vit_text *wh
     if (!file || !file_name(s, folder, path))
         snprintf(why->text, sizeof why->text, "reference: %s",
                  file ? "the cache's folder has too long a name" : "out of memory");
-    else if (is_foreign(path))
+    else if (is_foreign(path, sizeof h + size))
         snprintf(why->text, sizeof why->text, "%.400s: is there and is no reference: it is not written over", path);
     else {
         memcpy(file, &h, sizeof h);
