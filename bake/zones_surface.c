@@ -118,7 +118,7 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
                             .atlas = z->in->atlas,
                             .ray_offset = s->ray_offset,
                             .box_pad = s->box_pad,
-                            .radius = 1.0f,
+                            .radius = s->radius,
                             .effects = s->effects,
                             .bounces = s->bounces,
                             .first_path = PILOT_FIRST + f * PILOT_MOST,
@@ -128,7 +128,8 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         vit_photon *photons = NULL;
         status = count ? photons_bake(&in, z->in->threads, &photons, &found, why) : VIT_OK;
         for (uint32_t i = 0; i < found; i++)
-            flux[photons[i].zone] += (photons[i].power[0] + photons[i].power[1] + photons[i].power[2]) / (float)probes;
+            flux[photons[i].zone] += (photons[i].power[0] + photons[i].power[1] + photons[i].power[2]) *
+                                     photons[i].radius2 / (float)probes; /* powers are per area of each photon's own disc */
         free(photons);
     }
     free(lights);
