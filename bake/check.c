@@ -178,17 +178,20 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
 
 static void look_at_brightness(const check *c, const float *picture, check_found *out) {
     ranked order[CHECK_PIXELS];
+    uint32_t white = 0, hit = 0;
     for (uint32_t i = 0; i < c->count; i++) {
         const float *q = picture + 3 * (size_t)i;
         const double least = fmin((double)q[0], fmin((double)q[1], (double)q[2])),
                      most = fmax((double)q[0], fmax((double)q[1], (double)q[2]));
         out->black += (most < BLACK) / (double)c->count;
-        out->white += (least >= 1.0) / (double)c->count;
+        white += c->spots[i].hit && least >= 1.0;
+        hit += c->spots[i].hit;
         out->unlit += !(spot_brightness(c->spots + i) > 0) / (double)c->count;
         out->unhit += !c->spots[i].hit / (double)c->count;
         order[i] = (ranked){most, i};
     }
     qsort(order, c->count, sizeof *order, in_order);
+    out->white = hit > 0 ? white / (double)hit : 0;
     out->median = order[c->count / 2].by;
 }
 

@@ -30,7 +30,7 @@ typedef struct check_found {
     double direct, indirect; /* of all pixels, all channels: of each part alone; 1: not looked at */
     double limited;          /* what paths of the check's bounces find of all light, or of the darker half's if that is less */
     double worst;            /* largest distance of flux and dark from 1 beyond their errors */
-    double black, white;     /* shares of pixels that show as black, as white */
+    double black, white;     /* shares of pixels that show as black; of those that show surfaces, as white */
     double unlit;            /* share of pixels that get no light at all */
     double unhit;            /* share of pixels that show no surface */
     double median;           /* of the brightest channel, radiance times exposure */

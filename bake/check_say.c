@@ -41,9 +41,16 @@ static const char *why_black(const pipeline *p, const pipeline_packed *packed, c
         const vit_light *l = packed->tracks.lights + i;
         lights = lights || l->intensity[0] + l->intensity[1] + l->intensity[2] > 0.0f;
     }
+    bool emits = false; /* a material of the scene, as the meshes or the scene file have it */
+    for (uint32_t i = 0; i < s->materials; i++) {
+        const vit_material *m = packed->plan.materials + i;
+        emits = emits || m->emission[0] + m->emission[1] + m->emission[2] > 0.0f;
+    }
     (void)p;
     if (f->unhit >= NEARLY_ALL)
         return "the camera sees no surface that could be lit";
+    if (!lights && emits)
+        return "what emits gives no light: it lies behind other faces in the same place, or area_light is false";
     if (!lights)
         return "the scene has no lights: none of its own, no area light, no sky that lights, no ambient";
     if (f->unlit >= NEARLY_ALL)
@@ -66,7 +73,8 @@ void check_exposure(const pipeline *p, const pipeline_packed *packed, const chec
         progress_line(p->progress, true, "warning: %.0f %% of the picture is black", 100 * f->black);
     else if (f->white >= NEARLY_ALL)
         progress_line(p->progress, true,
-                      "warning: %.0f %% of the picture is white, overexposed: its median is %.3g times white; exposure = %.2g "
+                      "warning: %.0f %% of the picture's surfaces are white, overexposed: its median is %.3g times white; "
+                      "exposure = %.2g "
                       "would show it",
                       100 * f->white, f->median, now * MIDDLE / f->median);
 }

@@ -41,7 +41,8 @@ static void place_vertices(importer *im, instance *in) {
             const double *row = in->world + 4 * k;
             const double far =
                 fmax(fmax(fabs(row[0] * (double)v->x), fabs(row[1] * (double)v->y)), fabs(row[2] * (double)v->z));
-            im->m->step = isfinite(far) ? fmax(im->m->step, far * 0x1p-23) : im->m->step;
+            if (far <= (double)IMPORT_FAR) /* what lies farther out is dropped */
+                im->m->step = fmax(im->m->step, far * 0x1p-23);
             in->position[3 * i + k] = (float)(row[0] * (double)v->x + row[1] * (double)v->y + row[2] * (double)v->z + row[3]);
         }
         in->vertex[i] = VIT_NONE;

@@ -199,7 +199,7 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
     if (out->help || out->version)
         return VIT_OK;
     if (!out->input)
-        return usage(why, "vitrine-bake", "which scene or mesh?");
+        return usage(why, "no input", "which scene or mesh?");
     if (out->fit > 0 && out->fit_work > 0)
         return usage(why, "--fit-work", "one budget at a time, not --fit as well");
     if (out->json && !out->list)

@@ -1,4 +1,5 @@
 /* pack_write.c: lays the sections out as one file image, and puts that image under its name whole or not at all. */
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "pack_write.h"
 
 #include <dirent.h>
@@ -124,6 +125,13 @@ static void folder_of(const char *path, char folder[PATH_MAX]) {
     snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
+/* Is the file empty or does it begin as packs do? Nothing else under such a name is ours, whoever may have given it. */
+static bool begins_as_pack(int file) {
+    char start[sizeof VIT_PACK_MAGIC];
+    const ssize_t n = pread(file, start, sizeof start, 0);
+    return n == 0 || (n == (ssize_t)sizeof start && memcmp(start, VIT_PACK_MAGIC, sizeof start) == 0);
+}
+
 /* Removes what killed processes have left of `path`. */
 static void remove_left_behind(const char *path) {
     char folder[PATH_MAX];
@@ -133,8 +141,8 @@ static void remove_left_behind(const char *path) {
     for (struct dirent *e = d ? readdir(d) : NULL; e; e = readdir(d)) {
         if (!is_temporary_of(slash ? slash + 1 : path, e->d_name))
             continue;
-        const int file = openat(dirfd(d), e->d_name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-        if (file >= 0 && lock(file))
+        const int file = openat(dirfd(d), e->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (file >= 0 && begins_as_pack(file) && lock(file))
             unlinkat(dirfd(d), e->d_name, 0);
         if (file >= 0)
             close(file);
@@ -227,18 +235,20 @@ static const char *fill_and_rename(int file, const char *path, const void *bytes
 static vit_status check_there(const char *path, vit_text *why) {
     struct stat there;
     if (stat(path, &there) != 0)
-        return VIT_OK;
+        return lstat(path, &there) != 0 ? VIT_OK : fail_file(why, path, "is a link that leads nowhere", 0);
     if (S_ISDIR(there.st_mode))
         return fail_file(why, path, "is a folder, not a regular file", 0);
     if (!S_ISREG(there.st_mode))
         return fail_file(why, path, "not a regular file", 0);
     if (access(path, W_OK) != 0)
         return fail_file(why, path, "cannot be written", errno);
-    return there.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH) ? VIT_OK : fail_file(why, path, "is read-only", 0); /* root may, but is not meant to */
+    return there.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)
+               ? VIT_OK
+               : fail_file(why, path, "is read-only", 0); /* root may, but is not meant to */
 }
 
 vit_status pack_can_save(const char *path, vit_text *why) {
-    static const unsigned char page[VIT_PACK_ALIGN];
+    static const unsigned char page[VIT_PACK_ALIGN] = VIT_PACK_MAGIC; /* as what a killed process leaves */
     vit_status status = check_there(path, why);
     if (status != VIT_OK)
         return status;
@@ -280,9 +290,12 @@ vit_status pack_can_make(const char *folder, const char *name, vit_text *why) {
 }
 
 vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why) {
+    char target[PATH_MAX];
     const vit_status status = check_there(path, why);
     if (status != VIT_OK)
         return status;
+    if (realpath(path, target)) /* where a link leads: rename() would replace the link */
+        path = target;
     remove_left_behind(path);
     const int file = create_temporary(path);
     if (file < 0)

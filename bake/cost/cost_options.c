@@ -109,7 +109,7 @@ static vit_status check(const cost_options *o, vit_text *why) {
     if (o->help || o->version)
         return VIT_OK;
     if (!o->input)
-        return usage(why, "vitrine-cost", "which scene or mesh?");
+        return usage(why, "no input", "which scene or mesh?");
     if (o->fit > 0 && o->fit_work > 0)
         return usage(why, "--fit-work", "one budget at a time, not --fit as well");
     if (o->write && !(o->fit > 0) && !(o->fit_work > 0))

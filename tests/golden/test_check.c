@@ -123,7 +123,7 @@ static void black_and_white_pictures_are_warned_of_with_the_reason(void **state)
         {"1.0", "0.3", NULL, "", "100 % of the picture is black: the scene has no lights"},
         {"1.0", "0.3", "0.0, 0.0, 0.0", "", "100 % of the picture is black: the scene has no lights"},
         {"1e-6", "0.3", "10.0, 10.0, 10.0", "", "100 % of the picture is black, underexposed: its median is "},
-        {"1000.0", "0.3", "10.0, 10.0, 10.0", "", "100 % of the picture is white, overexposed: its median is "},
+        {"1000.0", "0.3", "10.0, 10.0, 10.0", "", "100 % of the picture's surfaces are white, overexposed: its median is "},
         {"1.0", "0.3", "10.0, 10.0, 10.0",
          "materials = ( { name = \"DefaultMaterial\"; kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; } );\n",
          "100 % of the picture is black: the camera sees no surface that could be lit"},

@@ -158,12 +158,18 @@ static void a_name_that_is_too_long_is_refused(void **state) {
     assert_int_equal(entries(), 0);
 }
 
-static void put(const char *end) {
+static void put_text(const char *end, const char *text) {
     char name[192];
     snprintf(name, sizeof name, "%s%s", path, end);
     FILE *file = fopen(name, "w");
     assert_non_null(file);
+    assert_true(fwrite(text, 1, strlen(text) + 1, file) == strlen(text) + 1);
     assert_int_equal(fclose(file), 0);
+}
+
+/* What is left of a save that was killed begins as a pack does. */
+static void put(const char *end) {
+    put_text(end, VIT_PACK_MAGIC);
 }
 
 static void drop(const char *end) {
@@ -192,6 +198,35 @@ static void files_that_only_look_like_ours_stay(void **state) {
     assert_int_equal(entries(), 1 + ENDS);
     for (int i = 0; i < ENDS; i++)
         drop(ends[i]);
+}
+
+/* A part of a scene under such a name, say. */
+static void files_of_others_under_our_names_stay(void **state) {
+    (void)state;
+    vit_text why = {""};
+    put_text(".tmp-4711-0", "fov = 60.0;");
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(entries(), 2);
+    drop(".tmp-4711-0");
+}
+
+/* Links stay links: what they lead to is written. */
+static void a_link_is_followed(void **state) {
+    (void)state;
+    char name[192];
+    struct stat link;
+    vit_text why = {""};
+    put(".target");
+    snprintf(name, sizeof name, "%s.target", path);
+    assert_int_equal(symlink(name, path), 0);
+    assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
+    assert_int_equal(lstat(path, &link), 0);
+    assert_true(S_ISLNK(link.st_mode));
+    assert_int_equal(lstat(name, &link), 0);
+    assert_int_equal(link.st_size, SIZE);
+    drop(".target");
+    assert_failed(pack_save(path, bytes, SIZE, &why), &why, "leads nowhere");
+    assert_int_equal(unlink(path), 0);
 }
 
 /* A second process that is in the middle of saving to the same name. */
@@ -285,6 +320,8 @@ int main(void) {
         IN_A_FOLDER(a_signal_in_the_middle_of_a_write_leaves_nothing),
         IN_A_FOLDER(what_a_killed_process_left_is_removed_by_the_next_save),
         IN_A_FOLDER(files_that_only_look_like_ours_stay),
+        IN_A_FOLDER(files_of_others_under_our_names_stay),
+        IN_A_FOLDER(a_link_is_followed),
         IN_A_FOLDER(what_a_living_process_writes_stays),
     };
 #undef IN_A_FOLDER
