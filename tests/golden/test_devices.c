@@ -194,7 +194,7 @@ static void a_device_is_chosen_by_a_part_of_its_name(void **state) {
     tool(&r, TOOL_PLAY " %s --device 2", test_pack("list"));
     tool_refuses(&r, "vitrine-play", VIT_FAILED, "no device 2, only 0 to 1, and host");
     tool(&r, TOOL_PLAY " %s --device 99999999999999999999", test_pack("list"));
-    tool_refuses(&r, "vitrine-play", VIT_FAILED, "only 0 to 1");
+    tool_refuses(&r, "vitrine-play", VIT_FAILED, "there is no device '99999999999999999999'; there are: 0 Portable");
     tool(&r, TOOL_PLAY " %s --device turbo", test_pack("list"));
     tool_refuses(&r, "vitrine-play", VIT_FAILED, "there is no device 'turbo'; there are: 0 Portable");
     tool(&r, TOOL_PLAY " %s --device=", test_pack("list"));
