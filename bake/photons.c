@@ -144,9 +144,10 @@ static float photon_radius(float radius, float way, float facing) {
     return float_min(radius, float_max(near, VIT_PHOTON_LEAST * radius));
 }
 
-/* power: W, incident. */
-static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, uint32_t zone) {
-    const float r2 = radius * radius, inv = 1.0f / r2, scale = 2.0f * PHOTON_INV_PI * inv;
+/* power: W, incident; whole: the scene's radius. As photon_store() of kernels/photons.cl. */
+static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, float whole, uint32_t zone) {
+    const float r2 = radius * radius, inv = 1.0f / r2, spread = float_max(radius, VIT_PHOTON_CAP * whole),
+                scale = 2.0f * PHOTON_INV_PI * (1.0f / (spread * spread));
     *q = (vit_photon){.position = {p.x, p.y, p.z},
                       .radius2 = r2,
                       .direction = {d.x, d.y, d.z},
@@ -212,7 +213,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             return;
         if (hit > 0 && matt)
             store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power,
-                  photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), cell_of(b, d, triangle, weight_of));
+                  photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), b->in->radius, cell_of(b, d, triangle, weight_of));
         if (hit == 0 && !l->area && !l->sky)
             power = vec3_scale(power, range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);

@@ -61,12 +61,13 @@ static inline lf photon_radius(float radius, lf way, lf facing)
     return l_min(L_F(radius), l_max(near, L_F(VIT_PHOTON_LEAST * radius)));
 }
 
-/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident. */
-static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, lf radius, lu zone)
+/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident; whole: the scene's radius. */
+static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, lf radius, float whole, lu zone)
 {
     float v[11 * VIT_LANES];
     uint zones[VIT_LANES];
-    lf r2 = radius * radius, inv = l_div(1.0f, r2), scale = inv * (2.0f * VIT_INV_PI);
+    lf r2 = radius * radius, inv = l_div(1.0f, r2), spread = l_max(radius, L_F(VIT_PHOTON_CAP * whole)),
+       scale = l_div(1.0f, spread * spread) * (2.0f * VIT_INV_PI);
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     p = lv3_sel(valid, p, zero);
     d = lv3_sel(valid, d, zero);
@@ -158,7 +159,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
                 zone = cell_zone(cells, &cell);
             }
             lf radius = l_sel(matt, photon_radius(scene->radius, t, -lv3_dot(from, s.face)), L_F(scene->radius));
-            photon_store(photons, (hit_number - 1) * paths + first, matt, s.position, d, power, radius, zone);
+            photon_store(photons, (hit_number - 1) * paths + first, matt, s.position, d, power, radius, scene->radius, zone);
             stored += popcount(l_bits(matt));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
