@@ -27,7 +27,7 @@ static bool photons_are_finite(const vit_scene *s, const vit_light *l) {
         most /= l->inv_range2;
     if (l->kind == VIT_LIGHT_DIRECTIONAL)
         most *= (double)l->spot_scale * l->spot_scale;
-    return most * 8.0 / l->path_count / ((double)s->radius * s->radius * VIT_PHOTON_LEAST * VIT_PHOTON_LEAST) <= VIT_MAX_PHOTON;
+    return most * 8.0 / l->path_count / ((double)s->radius * s->radius * VIT_PHOTON_CAP * VIT_PHOTON_CAP) <= VIT_MAX_PHOTON;
 }
 
 static const char *light_fault(const vit_scene *s, const vit_light *l) {
