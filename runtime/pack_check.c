@@ -1,7 +1,9 @@
 /* pack_check.c: checks the sections of plain records: every index and every float that a kernel will use. */
 #include "pack_check.h"
 
-vit_status vit_pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why) {
+vit_status vit_pack_check_CAMS(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_camera *cameras = p->section[VIT_SECTION_CAMS];
     for (vit_u32 i = 0; i < s->frames; i++) {
         const vit_camera *c = VIT_RECORD(vit_camera, cameras, i);
         if (!all_finite(c->eye, 3) || !all_finite(c->corner, 3) || !all_finite(c->right, 3) || !all_finite(c->down, 3))
@@ -82,11 +84,13 @@ static vit_status check_path_ranges(const vit_scene *s, const vit_light *lights,
     }
     if (sum != s->paths)
         return vit_pack_refuse(why, "section LITE: the lights have %llu photon paths, META says %u", (unsigned long long)sum,
-                           s->paths);
+                               s->paths);
     return VIT_OK;
 }
 
-vit_status vit_pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why) {
+vit_status vit_pack_check_LITE(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_light *lights = p->section[VIT_SECTION_LITE];
     for (vit_u32 frame = 0; frame < s->frames; frame++)
         for (vit_u32 i = 0; i < s->lights; i++) {
             const vit_light *first = VIT_RECORD(vit_light, lights, i);
@@ -100,7 +104,9 @@ vit_status vit_pack_check_lights(const vit_scene *s, const vit_light *lights, vi
     return check_path_ranges(s, lights, why);
 }
 
-vit_status vit_pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why) {
+vit_status vit_pack_check_ATTR(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_attributes *attributes = p->section[VIT_SECTION_ATTR];
     for (vit_u32 i = 0; i < s->triangles; i++) {
         const vit_attributes *a = VIT_RECORD(vit_attributes, attributes, i);
         const vit_u32 material = a->material & VIT_MATERIAL_INDEX;
@@ -134,7 +140,9 @@ static const char *shine_fault(const vit_material *m) {
     return m->pad == 0 ? 0 : "padding is not 0";
 }
 
-vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why) {
+vit_status vit_pack_check_MATL(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_material *materials = p->section[VIT_SECTION_MATL];
     for (vit_u32 i = 0; i < s->materials; i++) {
         const vit_material *m = VIT_RECORD(vit_material, materials, i);
         if (!all_in_range(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO))
@@ -154,7 +162,9 @@ vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *mate
     return VIT_OK;
 }
 
-vit_status vit_pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why) {
+vit_status vit_pack_check_TEXR(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_texture *textures = p->section[VIT_SECTION_TEXR];
     for (vit_u32 i = 0; i < s->textures; i++) {
         const vit_texture *t = VIT_RECORD(vit_texture, textures, i);
         if (t->mip_count == 0)
@@ -167,13 +177,17 @@ vit_status vit_pack_check_textures(const vit_scene *s, const vit_texture *textur
     return VIT_OK;
 }
 
-vit_status vit_pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why) {
+vit_status vit_pack_check_MIPS(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_mip *mips = p->section[VIT_SECTION_MIPS];
     for (vit_u32 i = 0; i < s->mips; i++) {
         const vit_mip *m = VIT_RECORD(vit_mip, mips, i);
         if (m->width < 1 || m->width > 16384 || m->height < 1 || m->height > 16384)
-            return vit_pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width, m->height);
+            return vit_pack_refuse(why, "section MIPS: mip %u: %u x %u texels, edges must be in 1..16384", i, m->width,
+                                   m->height);
         if (m->pitch < m->width + 2)
-            return vit_pack_refuse(why, "section MIPS: mip %u: pitch %u leaves no gutter beside %u texels", i, m->pitch, m->width);
+            return vit_pack_refuse(why, "section MIPS: mip %u: pitch %u leaves no gutter beside %u texels", i, m->pitch,
+                                   m->width);
         /* The gutter's corners are texels (-1, -1) and (width, height). Products of 32-bit numbers fit 64 bits. */
         const uint64_t before = (uint64_t)m->pitch + 1, last = m->offset + (uint64_t)m->height * m->pitch + m->width;
         if (m->offset < before || last >= s->texels)
@@ -182,14 +196,29 @@ vit_status vit_pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text
     return VIT_OK;
 }
 
-vit_status vit_pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why) {
+/* Every word is a texel. */
+vit_status vit_pack_check_ATLS(const vit_pack *p, vit_text *why) {
+    (void)p;
+    (void)why;
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_SIDE(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
     for (uint64_t i = 0; s->cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
         const vit_u32 side = *VIT_RECORD(vit_u32, sides, i);
         const uint64_t parts = side >> VIT_SIDE_PARTS_SHIFT, first = side & VIT_SIDE_CELL;
         if (parts < 1 || first + parts * parts > s->cells)
-            return vit_pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells", (unsigned long long)i,
-                               (unsigned long long)parts, (unsigned long long)first, s->cells);
+            return vit_pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells",
+                                   (unsigned long long)i, (unsigned long long)parts, (unsigned long long)first, s->cells);
     }
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_CELL(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_cell *cells = p->section[VIT_SECTION_CELL];
     for (vit_u32 i = 0; i < s->cells; i++) {
         const vit_cell *c = VIT_RECORD(vit_cell, cells, i);
         for (int k = 0; k < 3; k++)
@@ -199,28 +228,36 @@ vit_status vit_pack_check_cells(const vit_scene *s, const vit_u32 *sides, const 
     return VIT_OK;
 }
 
-vit_status vit_pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why) {
+vit_status vit_pack_check_EMIT(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_emitter *emitters = p->section[VIT_SECTION_EMIT];
     const uint64_t area = VIT_PATTERNS * (uint64_t)s->area_samples, count = area + VIT_PATTERNS * (uint64_t)s->sky_samples;
     for (uint64_t i = 0; i < count; i++) {
         const vit_emitter *e = VIT_RECORD(vit_emitter, emitters, i);
         const float *unit = i < area ? e->normal : e->position;
         if (!all_finite(e->position, 3) || !is_unit(unit))
-            return vit_pack_refuse(why, "section EMIT: point %llu: position is not finite, or normal or direction not a unit vector",
-                               (unsigned long long)i);
+            return vit_pack_refuse(why,
+                                   "section EMIT: point %llu: position is not finite, or normal or direction not a unit vector",
+                                   (unsigned long long)i);
         if (i < area ? !in_range(e->radius2, FLT_MIN, FLT_MAX) : !all_in_range(&e->radius2, 1, 0.0f, 0.0f))
-            return vit_pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky", (unsigned long long)i);
+            return vit_pack_refuse(why, "section EMIT: point %llu: radius2 must be > 0 on surfaces, and 0 in the sky",
+                                   (unsigned long long)i);
         if (!in_range(e->near2, 0.0f, i < area ? FLT_MAX : 0.0f))
-            return vit_pack_refuse(why, "section EMIT: point %llu: near2 must be finite and >= 0, and 0 in the sky", (unsigned long long)i);
+            return vit_pack_refuse(why, "section EMIT: point %llu: near2 must be finite and >= 0, and 0 in the sky",
+                                   (unsigned long long)i);
         if (!all_in_range(e->power, 3, 0.0f, VIT_MAX_INTENSITY))
             return vit_pack_refuse(why, "section EMIT: point %llu: power must be in 0..1e15", (unsigned long long)i);
     }
     return VIT_OK;
 }
 
-vit_status vit_pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why) {
+vit_status vit_pack_check_SKYT(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_sky_texel *texels = p->section[VIT_SECTION_SKYT];
     for (uint64_t i = 0; i < (s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0); i++)
         if (!all_in_range(VIT_RECORD(vit_sky_texel, texels, i)->radiance, 3, 0.0f, VIT_MAX_RADIANCE))
-            return vit_pack_refuse(why, "section SKYT: texel %llu: radiance must be in 0..%g", (unsigned long long)i, (double)VIT_MAX_RADIANCE);
+            return vit_pack_refuse(why, "section SKYT: texel %llu: radiance must be in 0..%g", (unsigned long long)i,
+                                   (double)VIT_MAX_RADIANCE);
     return VIT_OK;
 }
 
@@ -241,7 +278,9 @@ static const char *photon_fault(const vit_scene *s, const vit_photon *p) {
     return product >= 1 - 1e-4 && product <= 1 + 1e-4 ? 0 : "inv_radius2 is not 1 / radius2";
 }
 
-vit_status vit_pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why) {
+vit_status vit_pack_check_PHOT(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_photon *photons = p->section[VIT_SECTION_PHOT];
     for (vit_u32 i = 0; i < s->baked; i++) {
         const char *fault = photon_fault(s, VIT_RECORD(vit_photon, photons, i));
         if (fault)
@@ -250,7 +289,9 @@ vit_status vit_pack_check_photons(const vit_scene *s, const vit_photon *photons,
     return VIT_OK;
 }
 
-vit_status vit_pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why) {
+vit_status vit_pack_check_GOLD(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_gold *golds = p->section[VIT_SECTION_GOLD];
     for (vit_u32 i = 0; i < s->frames; i++)
         if (!all_zero(VIT_RECORD(vit_gold, golds, i)->pad, 4))
             return vit_pack_refuse(why, "section GOLD: frame %u: padding is not 0", i);

@@ -1,10 +1,11 @@
 /* The loader's checks of what a pack says, one section a function. pack_read.c has checked the container before: every section
- * has its hash and exactly the size that META counts. Each refuses with VIT_BAD_INPUT and one line. Records are as the file has them and
- * are looked at by VIT_RECORD alone; the scene is in the machine's byte order. */
+ * has its hash and, but for META itself, exactly the size that META counts. Each refuses with VIT_BAD_INPUT and one line.
+ * Records are as the file has them and are looked at by VIT_RECORD alone; the scene is in the machine's byte order. */
 #ifndef VIT_PACK_CHECK_H
 #define VIT_PACK_CHECK_H
 
 #include "byte_order.h"
+#include "pack_read.h"
 
 #include <float.h>
 #include <stdbool.h>
@@ -12,25 +13,17 @@
 /* Writes "pack: " and the formatted line, returns VIT_BAD_INPUT. */
 vit_status vit_pack_refuse(vit_text *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* A check for each section: pack_read.c calls them in the order of VIT_SECTIONS, and one that is missing here does not compile
+ * there. */
+typedef vit_status vit_pack_check(const vit_pack *p, vit_text *why);
 /* pack_meta.c: the scene itself; after VIT_OK its counts are within the limits that vit_pack_derive() states. */
-vit_status vit_pack_check_meta(const vit_scene *s, vit_text *why);
-
+vit_pack_check vit_pack_check_META;
+/* pack_check_tree.c: triangles, then the tree over them. */
+vit_pack_check vit_pack_check_GEOM, vit_pack_check_BVHN;
 /* pack_check.c: the sections of plain records. */
-vit_status vit_pack_check_cameras(const vit_scene *s, const vit_camera *cameras, vit_text *why);
-vit_status vit_pack_check_lights(const vit_scene *s, const vit_light *lights, vit_text *why);
-vit_status vit_pack_check_attributes(const vit_scene *s, const vit_attributes *attributes, vit_text *why);
-vit_status vit_pack_check_materials(const vit_scene *s, const vit_material *materials, vit_text *why);
-vit_status vit_pack_check_textures(const vit_scene *s, const vit_texture *textures, vit_text *why);
-vit_status vit_pack_check_mips(const vit_scene *s, const vit_mip *mips, vit_text *why);
-vit_status vit_pack_check_photons(const vit_scene *s, const vit_photon *photons, vit_text *why);
-vit_status vit_pack_check_cells(const vit_scene *s, const vit_u32 *sides, const vit_cell *cells, vit_text *why);
-vit_status vit_pack_check_emitters(const vit_scene *s, const vit_emitter *emitters, vit_text *why);
-vit_status vit_pack_check_sky(const vit_scene *s, const vit_sky_texel *texels, vit_text *why);
-vit_status vit_pack_check_golds(const vit_scene *s, const vit_gold *golds, vit_text *why);
-
-/* vit_pack_check_tree.c: triangles, then the tree over them. */
-vit_status vit_pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why);
-vit_status vit_pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why);
+vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_TEXR,
+    vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL, vit_pack_check_EMIT,
+    vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
 
 /* False for NaN, as every comparison with it is. */
 static inline bool in_range(float value, float least, float most) {

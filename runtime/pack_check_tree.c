@@ -1,4 +1,4 @@
-/* vit_pack_check_tree.c: checks the triangles and the BVH over them: after it, a traversal with a stack of VIT_BVH_STACK ends,
+/* pack_check_tree.c: checks the triangles and the BVH over them: after it, a traversal with a stack of VIT_BVH_STACK ends,
  * stays inside both sections and finds every triangle. One depth-first walk, no memory but its own stack.
  *
  * Why the walk ends and visits every node once: an inner child's index is greater than its parent's, so there is no cycle.
@@ -8,14 +8,18 @@
 
 #include <string.h>
 
-vit_status vit_pack_check_triangles(const vit_scene *s, const vit_triangle *triangles, vit_text *why) {
+vit_status vit_pack_check_GEOM(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_triangle *triangles = p->section[VIT_SECTION_GEOM];
     for (vit_u32 i = 0; i < s->triangles; i++) {
         const vit_triangle *t = VIT_RECORD(vit_triangle, triangles, i);
         const float n[3] = {t->nx, t->ny, t->nz};
         if (!all_finite(t->v0, 3) || !all_finite(t->v1, 3) || !all_finite(t->v2, 3))
             return vit_pack_refuse(why, "section GEOM: triangle %u: vertex is not finite", i);
-        if (!all_in_range(t->v0, 3, -1e9f, 1e9f) || !all_in_range(t->v1, 3, -1e9f, 1e9f) || !all_in_range(t->v2, 3, -1e9f, 1e9f))
-            return vit_pack_refuse(why, "section GEOM: triangle %u: vertex beyond 1e9 m", i); /* products of edges stay finite */
+        if (!all_in_range(t->v0, 3, -1e9f, 1e9f) || !all_in_range(t->v1, 3, -1e9f, 1e9f) ||
+            !all_in_range(t->v2, 3, -1e9f, 1e9f))
+            return vit_pack_refuse(why, "section GEOM: triangle %u: vertex beyond 1e9 m",
+                                   i); /* products of edges stay finite */
         if (!all_finite(n, 3))
             return vit_pack_refuse(why, "section GEOM: triangle %u: normal is not finite", i);
         if (all_in_range(n, 3, 0.0f, 0.0f))
@@ -74,13 +78,13 @@ static bool box_holds_triangle(const visit *v, const vit_triangle *t, float pad)
 static vit_status enter_leaf(walk *w, const visit *v) {
     const vit_u32 first = v->child & VIT_LEAF_FIRST, count = (v->child >> VIT_LEAF_SHIFT & (VIT_LEAF_MAX - 1)) + 1;
     if ((uint64_t)first + count > w->s->triangles)
-        return vit_pack_refuse(w->why, "section BVHN: node %u: leaf of triangles %u..%u of %u", v->parent, first, first + count - 1,
-                           w->s->triangles);
+        return vit_pack_refuse(w->why, "section BVHN: node %u: leaf of triangles %u..%u of %u", v->parent, first,
+                               first + count - 1, w->s->triangles);
     if (box_is_empty(v->lo, v->hi)) /* a missing child */
         return VIT_OK;
     if (first != w->found)
         return vit_pack_refuse(w->why, "section BVHN: node %u: leaf begins at triangle %u, expected %u", v->parent, first,
-                           w->found);
+                               w->found);
     for (vit_u32 i = first; i < first + count; i++)
         if (!box_holds_triangle(v, VIT_RECORD(vit_triangle, w->triangles, i), w->s->box_pad))
             return vit_pack_refuse(w->why, "section BVHN: node %u: box does not hold triangle %u", v->parent, i);
@@ -118,8 +122,9 @@ static vit_status enter_node(walk *w, const visit *v) {
     return status == VIT_OK ? queue_child(w, v, n, 0) : status;
 }
 
-vit_status vit_pack_check_tree(const vit_scene *s, const vit_bvh_node *nodes, const vit_triangle *triangles, vit_text *why) {
-    walk w = {.s = s, .nodes = nodes, .triangles = triangles, .why = why};
+vit_status vit_pack_check_BVHN(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    walk w = {.s = s, .nodes = p->section[VIT_SECTION_BVHN], .triangles = p->section[VIT_SECTION_GEOM], .why = why};
     w.stack[w.waiting++] = (visit){.child = 0, .lo = {-FLT_MAX, -FLT_MAX, -FLT_MAX}, .hi = {FLT_MAX, FLT_MAX, FLT_MAX}};
     while (w.waiting > 0) {
         const visit v = w.stack[--w.waiting];

@@ -57,7 +57,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
         if (!in_range(floats[i].value, floats[i].least, floats[i].most))
             return vit_pack_refuse(why, "section META: %s must be in %g..%g, got %g", floats[i].name, (double)floats[i].least,
-                               (double)floats[i].most, (double)floats[i].value);
+                                   (double)floats[i].most, (double)floats[i].value);
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
@@ -106,7 +106,8 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
     if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
         return vit_pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
-        return vit_pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT", s->area_samples, s->sky_samples);
+        return vit_pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT",
+                               s->area_samples, s->sky_samples);
     if (s->sky_size == 0 && (e & VIT_BIT(SKY_IMAGE)))
         return vit_pack_refuse(why, "section META: the effect SKY_IMAGE without a sky");
     if ((s->chain > 0) != ((e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0))
@@ -129,7 +130,8 @@ static vit_status check_bounds(const vit_scene *s, vit_text *why) {
     return VIT_OK;
 }
 
-vit_status vit_pack_check_meta(const vit_scene *s, vit_text *why) {
+vit_status vit_pack_check_META(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
     vit_status status = check_derived(s, why);
     if (status == VIT_OK)
         status = check_floats(s, why);

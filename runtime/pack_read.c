@@ -10,7 +10,8 @@
 
 /* Layouts are the same for every compiler only as long as this holds; ATLS is a plain array of words. */
 #define X(code, type, records)                                                                                                 \
-    _Static_assert(sizeof(type) == 4 || sizeof(type) == 8 || sizeof(type) % 16 == 0, #type " must be 4, 8 or a multiple of 16 bytes");
+    _Static_assert(sizeof(type) == 4 || sizeof(type) == 8 || sizeof(type) % 16 == 0,                                           \
+                   #type " must be 4, 8 or a multiple of 16 bytes");
 VIT_SECTIONS(X)
 #undef X
 _Static_assert(sizeof(vit_pack_header) == 64 && sizeof(vit_pack_entry) == 32, "as drawn in vitrine_pack.h");
@@ -82,7 +83,7 @@ static vit_status check_place(const unsigned char *bytes, size_t size, const vit
         return vit_pack_refuse(why, "section %s: records of %u bytes, expected %u", codes[i], e->record, record_bytes[i]);
     if (e->offset % VIT_PACK_ALIGN != 0)
         return vit_pack_refuse(why, "section %s: offset %llu is not a multiple of %u", codes[i], (unsigned long long)e->offset,
-                           VIT_PACK_ALIGN);
+                               VIT_PACK_ALIGN);
     if (e->offset > size || e->size > size - e->offset)
         return vit_pack_refuse(why, "section %s: runs beyond the end of the file", codes[i]);
     if (e->offset < end)
@@ -112,7 +113,8 @@ static vit_status check_places(const unsigned char *bytes, size_t size, vit_pack
 }
 
 /* META has passed its check, so no count exceeds 2^32 and no product here wraps. */
-static vit_status check_sizes(const vit_scene *s, const vit_pack *p, vit_text *why) {
+static vit_status check_sizes(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
     const uint64_t expected[VIT_SECTION_COUNT] = {
 #define X(code, type, records) records,
         VIT_SECTIONS(X)
@@ -121,38 +123,21 @@ static vit_status check_sizes(const vit_scene *s, const vit_pack *p, vit_text *w
     for (int i = 0; i < VIT_SECTION_COUNT; i++)
         if (p->bytes[i] != expected[i] * record_bytes[i])
             return vit_pack_refuse(why, "section %s: %zu bytes, but META counts %llu records of %u", codes[i], p->bytes[i],
-                               (unsigned long long)expected[i], record_bytes[i]);
+                                   (unsigned long long)expected[i], record_bytes[i]);
     return VIT_OK;
 }
 
-static vit_status check_contents(const vit_scene *s, const vit_pack *p, vit_text *why) {
-    const void *const *at = p->section;
-    vit_status status = vit_pack_check_cameras(s, at[VIT_SECTION_CAMS], why);
+/* META first, since sizes follow from its counts; with all the others it passes once more. */
+static vit_status check_contents(const vit_pack *p, vit_text *why) {
+    vit_status status = vit_pack_check_META(p, why);
     if (status == VIT_OK)
-        status = vit_pack_check_lights(s, at[VIT_SECTION_LITE], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_triangles(s, at[VIT_SECTION_GEOM], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_attributes(s, at[VIT_SECTION_ATTR], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_tree(s, at[VIT_SECTION_BVHN], at[VIT_SECTION_GEOM], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_materials(s, at[VIT_SECTION_MATL], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_textures(s, at[VIT_SECTION_TEXR], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_mips(s, at[VIT_SECTION_MIPS], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_cells(s, at[VIT_SECTION_SIDE], at[VIT_SECTION_CELL], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_emitters(s, at[VIT_SECTION_EMIT], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_sky(s, at[VIT_SECTION_SKYT], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_photons(s, at[VIT_SECTION_PHOT], why);
-    if (status == VIT_OK)
-        status = vit_pack_check_golds(s, at[VIT_SECTION_GOLD], why);
-    return status; /* every word of ATLS is a texel */
+        status = check_sizes(p, why);
+#define X(code, type, records)                                                                                                 \
+    if (status == VIT_OK)                                                                                                      \
+        status = vit_pack_check_##code(p, why);
+    VIT_SECTIONS(X)
+#undef X
+    return status;
 }
 
 /* The scene lives as long as the pack in memory, or as `out`. */
@@ -179,14 +164,11 @@ vit_status vit_pack_read(const void *bytes, size_t size, vit_pack *out, vit_text
     const vit_scene *s = VIT_RECORD(vit_scene, (const vit_scene *)found.section[VIT_SECTION_META], 0);
     if (VIT_BIG_ENDIAN)
         vit_swap_scene((vit_scene *)(uintptr_t)s); /* which is a copy then */
-    status = vit_pack_check_meta(s, why);
-    if (status == VIT_OK)
-        status = check_sizes(s, &found, why);
-    if (status == VIT_OK)
-        status = check_contents(s, &found, why);
-    if (status == VIT_OK)
-        *out = found;
-    if (status == VIT_OK)
-        keep_scene(out, s);
-    return status;
+    found.scene = s;
+    status = check_contents(&found, why);
+    if (status != VIT_OK)
+        return status;
+    *out = found;
+    keep_scene(out, s);
+    return VIT_OK;
 }
