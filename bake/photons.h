@@ -1,5 +1,5 @@
-/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. METHODS.md
- * P, step 3. */
+/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. As in kernels/photons.cl:
+ * kernels/METHODS.md, "Photon paths". */
 #ifndef VIT_BAKE_PHOTONS_H
 #define VIT_BAKE_PHOTONS_H
 

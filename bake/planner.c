@@ -149,7 +149,7 @@ static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
     return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) | (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
 }
 
-/* METHODS.md P (2.6): slices as deep as they are wide. */
+/* kernels/METHODS.md, "Clusters" (16): slices as deep as they are wide. */
 static float slice_scale(const scene *s, const tracks *t) {
     double rows = (double)s->height / s->quality.tile;
     return (float)(1.0 / log2(1.0 + 2.0 * t->tan_half_fov / rows));

@@ -86,7 +86,7 @@ typedef struct scene_quality {
     double radius;             /* metres; 0: auto */
     int tile;                  /* 8, 16, 32, 64 */
     bool buckets;              /* estimate: list (false) or buckets */
-    bool raw;                  /* buckets without interpolation, 54 directions: the source's way */
+    bool raw;                  /* buckets without interpolation, 54 directions: as published */
     double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
     bool normal_keys;
     bool zones;                /* photons count only for surfaces that see where they landed, by 32 baked zones */

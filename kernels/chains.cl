@@ -1,4 +1,4 @@
-/* Pass 2 with mirrors or glass: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
+/* The pass chains: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
  * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel part as
  * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. What is
  * caught in glass or between panes leaves with the chain's last ray, straight on where it cannot be refracted. A chain that does not end on a matt surface

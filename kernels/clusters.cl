@@ -1,5 +1,5 @@
-/* Pass 5: view-sample clusters. METHODS.md P, steps 4 to 6, with existence as one bit a key: the bits are the leaf masks of the
- * hierarchy, and each set bit also sets its ancestors' bits, so that one prefix sum over all masks numbers all nodes. */
+/* The passes cluster_*, number_nodes and make_nodes: view-sample clusters. METHODS.md, "Clusters". A key exists by one bit: the bits are the
+ * leaf masks of the hierarchy, and each set bit also sets its ancestors' bits, so that one prefix sum over all masks numbers all nodes. */
 
 /* Where bit i of x (axis 0), y (1) or z (2) lies in a key: see vit_scene.key_bits. */
 static inline uint key_bit(global const vit_scene *scene, uint axis, uint i)
@@ -16,7 +16,7 @@ static inline uint key_spread(global const vit_scene *scene, uint axis, uint bit
     return key;
 }
 
-/* Depth slice of view depth z, counted from slice_first. METHODS.md P (2.6). */
+/* Depth slice of view depth z, counted from slice_first. METHODS.md, "Clusters" (16). */
 static inline li cluster_slice(global const vit_scene *scene, lf z)
 {
     lf k = floor(l_log2(l_div(l_max(z, L_F(scene->slice_near)), scene->slice_near)) * scene->slice_scale);

@@ -1,5 +1,5 @@
-/* Pass 3: direct light: hard shadows of points and directions, soft ones of surfaces. METHODS.md P, step 2, in radiometric
- * units. */
+/* The passes direct_light and area_light: hard shadows of points and directions, soft ones of surfaces. METHODS.md, "Direct light" (8) and
+ * METHODS.md, "Area lights" (10). */
 
 /* Fraction of a light's intensity that goes into direction -l (l: unit, towards the light). glTF KHR_lights_punctual. */
 static inline lf light_cone(global const vit_light *light, lv3 l)

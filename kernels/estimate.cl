@@ -1,8 +1,9 @@
-/* Pass 8: irradiance from photons, a density estimate: E = sum of Phi K(d), K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons
- * that arrive from the front. METHODS.md P, step 9 and "We correct". vit_photon.power is Phi 2 / (pi r^2). */
+/* The passes estimate_list and estimate_buckets: irradiance from photons, a density estimate: E = sum of Phi K(d),
+ * K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons that arrive from the front. METHODS.md, "Density estimate" (21).
+ * vit_photon.power is Phi 2 / (pi r^2). */
 
 /* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the kernel's
- * disc that lies on surfaces in those zones. METHODS.md does neither; bake/README.md, "Zones and areas", says why we do. */
+ * disc that lies on surfaces in those zones. METHODS.md, "Light-leak partition" and METHODS.md, "Effective area". */
 #define ESTIMATE_BAKED global const uint *accept, global const float *inverse_area
 typedef struct estimate_sample {
     lv3 p, s;        /* position, unit normal */
@@ -113,7 +114,7 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
         global const uint *prefix, global const int *bounds, global const float *buckets
 #define BUCKET_ARGUMENTS scene, cameras, frame, max_nodes, masks, prefix, bounds, buckets
 
-/* The source's way: each sample takes its cluster's 54 directions, 2 max(0, N d) B_d; blocks show. As estimate_gather. */
+/* As published, without mixing: each sample takes its cluster's 54 directions, and blocks show. METHODS.md, "Buckets" (20). As estimate_gather. */
 static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
 {
     lv3 s = sample->s;

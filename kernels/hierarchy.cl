@@ -1,4 +1,4 @@
-/* Pass 6: boxes of the inner nodes, level by level from the clusters up. METHODS.md P, step 7. */
+/* The pass node_bounds: boxes of the inner nodes, level by level from the clusters up. METHODS.md, "Node hierarchy". */
 
 /* Nodes of a level are numbered in a row: first of level + 1 is where the children of level's first mask word begin. */
 static inline uint level_begin(global const vit_scene *scene, global const uint *prefix, uint level)

@@ -1,4 +1,4 @@
-/* Pass 4: photon paths of moving lights. METHODS.md P, step 3. A photon is stored at every hit but the first, which is direct light.
+/* The pass photon_paths, of moving lights. METHODS.md, "Photon paths". A photon is stored at every hit but the first, which is direct light.
  * Slot of path p's k-th stored photon: k * paths + p, so that no order of execution shows. */
 
 /* Footprint of a photon for the choice of mip level: wide, since its light spreads over its radius anyway. */

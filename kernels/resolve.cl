@@ -1,4 +1,4 @@
-/* Pass 11: light to pixels. METHODS.md P, step 10: radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
+/* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (27): radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
  * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine.h). */
 
 enum { FORMAT_XRGB8888, FORMAT_RGB565, FORMAT_RGBA32F };

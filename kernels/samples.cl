@@ -1,4 +1,4 @@
-/* Pass 2: view samples, what each pixel's ray found, or with mirrors and glass what it found in the end. */
+/* The pass samples: view samples, what each pixel's ray found, or with mirrors and glass what it found in the end. */
 
 /* Radiance of the sky in direction d, W/(m2 sr). */
 static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_sky_texel *sky, lv3 d)

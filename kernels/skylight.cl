@@ -1,4 +1,4 @@
-/* Light of the sky. Each pixel of 4 x 4 looks into another set of directions, all sets together are even, and whatever 4 x 4 pixels a window
+/* The passes sky_light and sky_filter. METHODS.md, "Sky light". Each pixel of 4 x 4 looks into another set of directions, all sets together are even, and whatever 4 x 4 pixels a window
  * shows, it holds each set once: a sample's irradiance is the mean over the window about it of those on the same surface, so that 16 times as
  * many directions count as are traced. Albedo comes after, so textures stay sharp. */
 

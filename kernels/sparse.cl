@@ -1,6 +1,6 @@
-/* Pass 8 at fewer samples: irradiance is estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other
- * samples get it from the four coarse ones around them, weighted bilinearly and by whether they lie on the same surface (and with
- * zones, take the same photons): Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees
+/* The passes estimate_sparse, interpolate and estimate_rest: irradiance at fewer samples. METHODS.md, "Sparse samples". It is
+ * estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other samples get it from the four coarse ones
+ * around them, weighted bilinearly and by whether they lie on the same surface (and with zones, take the same photons): Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees
  * with is estimated after all. Albedo is applied later, so that textures stay sharp. */
 
 #define SPARSE_ROW_BITS (VIT_EFFECT_SPARSE_16 ? 0 : 1)

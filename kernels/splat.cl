@@ -1,4 +1,4 @@
-/* Pass 7: which photons reach which clusters. METHODS.md P, step 8, turned round: a work-group owns a node and sorts its photons
+/* The passes splat_*: which photons reach which clusters. METHODS.md, "Splatting": a work-group owns a node and sorts its photons
  * into its children, level by level from the root, which holds all. Lists are in the photons' order by construction, so no
  * atomics, and sums over them are the same on every device. Tests of a batch of photons against a child run in lanes. */
 
@@ -58,8 +58,8 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
 #define SPLAT_BEYOND 1.000001f
 #define SPLAT_BEHIND 1e-6f
 
-/* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box (METHODS.md P (3.8)) and which do not come from
- * behind for every normal in it; or, with zones, which lie in a zone that counts for one of its samples. */
+/* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box and which do not come from behind for every
+ * normal in it (METHODS.md, "Splatting" (18)); or, with zones, which lie in a zone that counts for one of its samples. */
 static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
 {
     lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
@@ -196,7 +196,7 @@ kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint leve
 
 #endif
 
-/* Buckets of a cluster: raw, directions on a cube, 6 faces x 3 x 3 (METHODS.md P, step 8), else octants: whether a photon comes from
+/* Buckets of a cluster: raw, directions on a cube, 6 faces x 3 x 3 (METHODS.md, "Buckets" (20)), else octants (19): whether a photon comes from
  * the front of an axis-parallel surface is exact. */
 #define BUCKETS (VIT_EFFECT_RAW_BUCKETS ? 54u : 8u)
 

@@ -1,4 +1,4 @@
-/* Pass 1: the nearest triangle along each pixel's ray. */
+/* The pass visibility: the nearest triangle along each pixel's ray. */
 #if VIT_BUNDLE == 1
 kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance WORK_PARAMETERS)
 {

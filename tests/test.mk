@@ -18,7 +18,7 @@ $(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_
 
 NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
 $(NUMERIC_PROGRAMS): $(HOST_LAB)
-# The sources' plain methods, which nothing of the product uses.
+# Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a

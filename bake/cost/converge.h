@@ -9,7 +9,7 @@
 #define CONVERGE_LEAST 5
 #define CONVERGE_MOST 12
 #define CONVERGE_GROWTH 4.0        /* photon paths from step to step */
-#define CONVERGE_SHRINK (1.0 / 3)  /* of the radius, if nothing is said: README.md says why */
+#define CONVERGE_SHRINK (1.0 / 3)  /* of the radius, if nothing is said: README.md, "Convergence", says why */
 #define CONVERGE_MOST_PATHS 990000 /* what a frame may have, less the rounding up of many lights' shares */
 
 typedef struct converge_plan {

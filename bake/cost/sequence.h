@@ -1,6 +1,6 @@
 /* Low-discrepancy points in the unit square: the first two dimensions of Sobol's sequence with Owen's scrambling by hashing,
  * the order shuffled a pair of dimensions, so that pairs can be joined to more dimensions. Burley, "Practical Hash-based Owen
- * Scrambling", JCGT 10(4), 2020, sections 3 and 4; the hash is its equation for Laine and Karras's permutation. */
+ * Scrambling", JCGT 9(4), 2020, sections 3 and 4; the hash is its equation for Laine and Karras's permutation. */
 #ifndef VIT_COST_SEQUENCE_H
 #define VIT_COST_SEQUENCE_H
 

@@ -1,4 +1,4 @@
-/* METHODS.md W, one ray a work-item: parametric walk through the octree (Revelles, Urena, Lastra, WSCG 2000) with a stack in place
+/* One ray a work-item: parametric walk through the octree (Revelles, Urena, Lastra, WSCG 2000) with a stack in place
  * of its recursion, and Moeller and Trumbore's triangle test (JGT 2(1), 1997). Stands behind the library's kernels (strict.clh:
  * no contraction, so that these hits, and what leaks, are the same on every device).
  *
@@ -55,7 +55,7 @@ static inline float octree_least(float3 t)
     return fmin(t.x, fmin(t.y, t.z));
 }
 
-/* Distance at which the ray hits the triangle, or 0: METHODS.md W (12). */
+/* Distance at which the ray hits the triangle, or 0: (t, u, v) = (Q E2, P T, Q d) / (P E1) with P = d x E2, Q = T x E1, T from the first vertex to o. */
 static inline float octree_hit(global const octree_triangle *g, float3 o, float3 d)
 {
     float3 e1 = g->e1.xyz, e2 = g->e2.xyz, p = octree_cross(d, e2);

@@ -1,4 +1,4 @@
-/* The source's octree and triangle test (METHODS.md W, tests/baselines/) against our BVH and watertight test, one process, in
+/* The plain octree and triangle test (kernels/METHODS.md, "What we correct"; tests/baselines/) against our BVH and watertight test, one process, in
  * turn, the same rays on the same device: view rays, and shadow rays of their hits. Hits are compared before anything is timed;
  * what both do for a ray is counted apart, untimed. Then what leaks at shared edges. Cut-outs are filled on both sides. */
 #include "measure.h" /* before scene.h, whose type its parameter hides */

@@ -1,5 +1,5 @@
 /* Ray tracing in the manner of Whitted: view rays, smooth normals and hard shadows of one point light, no photons, 1280x968.
- * Frames a second against those that METHODS.md's source states for its GPU, on the Stanford bunny and on our balls, which
+ * Frames a second against those that Kristek 2011 states for its GPU (kernels/METHODS.md, "The four systems"), on the Stanford bunny and on our balls, which
  * stand in for its scene of as many triangles. Every frame's hash is checked before any is timed; scenes and settings then take
  * turns. */
 #include "scenes.h"
@@ -26,7 +26,7 @@ static const whitted_scene scenes[] = {
 };
 #define SCENES (sizeof scenes / sizeof *scenes)
 
-/* The columns of the source's table: with and without its two improvements, interpolated normals and 4x anti-aliasing. */
+/* The columns of Kristek's table: with and without its two improvements, interpolated normals and 4x anti-aliasing. */
 static const struct {
     const char *name, *effects, *antialias;
     double goal; /* frames a second on two cores */

@@ -227,7 +227,7 @@ static void walls_that_emit_light_one_another(void **state) {
     assert_true(fabs(whole - 1) < LIST_WITHIN);
 }
 
-/* The source's buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
+/* Raw buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
  * leaves out what lies round the corner. Neither is held to the truth. */
 static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state) {
     (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --estimate buckets --smoothing raw");

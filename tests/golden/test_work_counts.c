@@ -274,7 +274,7 @@ static void what_was_dropped_is_not_evaluated(void **state) {
     drop(c);
 }
 
-/* The source's buckets: a sample takes those of its cluster's 54 that hold light. */
+/* Raw buckets: a sample takes those of its cluster's 54 that hold light. */
 static void evaluations_of_raw_buckets_are_those_that_hold_light(void **state) {
     (void)state;
     counted *c = count_and_read("raw", (vit_open_info){0});

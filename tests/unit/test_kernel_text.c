@@ -1,4 +1,4 @@
-/* The kernels' text holds nothing whose bits differ between devices (DESIGN.md, "Strict arithmetic").
+/* The kernels' text holds nothing whose bits differ between devices (kernels/README.md, "Strict arithmetic").
  *
  * A text test cannot see types, so it is about names: calls of built-ins that are not correctly rounded, types and literals of
  * other precisions, image filters, atomics whose result depends on the order of work-items. Our own functions (l_log2, lv3_dot)
