@@ -1,4 +1,8 @@
-/* import -> tracks -> BVH -> geometry -> reach -> atlas | plan -> photons -> bounds -> pack. Data flows one way. */
+/* pipeline_load, once a scene: import -> tracks -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
+ * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> emitters -> photons; then with
+ * radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it, photons again; then zones
+ * and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds (the whole path is played) -> effects
+ * that rays met -> pack. */
 #include "pipeline.h"
 #include "bounds.h"
 #include "glass_gap.h"

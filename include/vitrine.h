@@ -94,8 +94,8 @@ typedef struct vit_open_info {
     vit_view view;
     void *framebuffer;         /* optional: vit_requirements.frame_bytes, 64-byte aligned, alive until vit_close(). Where the device shares
                                 * the host's memory, frames are rendered into it in place: give vit_frame() the same pointer */
-    uint32_t profile;          /* 1: time each pass (vit_stats.pass_ms) */
-    uint32_t count_work;       /* 1: count each pass's work (vit_stats.pass_work); frames are slower and have the same bits */
+    uint32_t profile;          /* 1: time each pass (vit_statistics.pass_ms) */
+    uint32_t count_work;       /* 1: count each pass's work (vit_statistics.pass_work); frames are slower and have the same bits */
     uint32_t record_reach;     /* 1: record what the rays of each frame reach (vit_reached); the same bits (baker) */
     uint32_t max_nodes;        /* not 0: lower or raise this bound of the pack (tests, baker) */
     uint32_t max_list;         /* likewise */
@@ -127,7 +127,7 @@ typedef struct vit_requirements {
     size_t frame_bytes;        /* tightly packed framebuffer in the asked format */
 } vit_requirements;
 
-/* Exact work of the frames since vit_open, equal on every device, and times of the last frame. */
+/* Counters, work and times of the last frame; extremes and what was dropped since vit_open. Equal on every device but for times and `lanes`. */
 typedef struct vit_statistics {
     uint64_t frames;           /* frames rendered since vit_open */
     uint32_t nodes, clusters, photons, list, pairs, largest; /* last frame: see VIT_COUNTERS in records.clh */

@@ -20,7 +20,7 @@
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
 #define VIT_PACK_VERSION 4u
 #define VIT_PACK_ALIGN 4096u
-#define VIT_WORD 4u /* bytes of every field of every record, and so what a machine of the other byte order swaps by */
+#define VIT_WORD 4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by */
 
 /* Does this machine have numbers in another order than the file? */
 #ifndef __BYTE_ORDER__
