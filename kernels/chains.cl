@@ -22,6 +22,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
+    /* 1. The view rays, and which of them met a mirror or glass. */
     global const vit_camera *camera = cameras + frame;
     li x, y, layer = L_I((int)(round % layers)), splits = L_I(0);
     l_pixel(scene, first, &x, &y);
@@ -32,6 +33,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     lf cone = L_F(camera_cone(scene, camera, round / layers));
     WORK_BEGIN
     for (uint i = 0; i < scene->chain && l_any(going); i++) {
+        /* 2. The surface there; as a mirror, it sends the ray back. */
         WORK_LANES(surface_points, going);
         if (VIT_EFFECT_REACH)
             reach_note(scene, attributes, reached, going, triangle, VIT_REACHED_VIEW);
@@ -39,6 +41,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         WORK_LANES(texture_fetches, s.textured);
         li glass = VIT_EFFECT_GLASS ? going & L_NE(s.shine.kind, L_I((int)VIT_MIRROR)) : L_I(0);
         lv3 next = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular, from = s.position;
+        /* 3. Glass: the first one forks into the two layers, later ones take the greater part, the chain's last ray leaves. */
         if (VIT_EFFECT_GLASS && l_any(glass)) {
             li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
             shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
@@ -54,10 +57,12 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
             tint = lv3_sel(glass & mirrored, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
         }
+        /* 4. On, with what the surface leaves of the light. */
         weight = lv3_sel(going, lv3_set(weight.x * tint.x, weight.y * tint.y, weight.z * tint.z), weight);
         length += l_sel(going, t, L_F(0));
         o = lv3_sel(going, from, o);
         d = lv3_sel(going, next, d);
+        /* 5. What the next ray meets. */
         lf reach = L_F(3e38f);
         li found = L_I((int)VIT_NONE);
         ray_packet r = ray_make(o, d);
@@ -68,7 +73,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         triangle = l_sel_i(going, found, triangle);
         going = chain_goes_on(attributes, materials, going & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
     }
-    /* What still goes on is black, and hits nothing. */
+    /* 6. The chains' ends. What still goes on is black, and hits nothing. */
     triangle = l_sel_i(going, L_I((int)VIT_NONE), triangle);
     weight = lv3_sel(going, lv3_set(L_F(0), L_F(0), L_F(0)), weight);
     L_STORE(L_AS_UINT(triangle), hit_triangle + first);

@@ -162,6 +162,7 @@ static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
  * near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y: pixels. */
 static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
 {
+    /* 1. Where the sample lies between the centres of tiles and slices. */
     lv3 p = sample->p, s = sample->s;
     li rest = L_GE(key, L_I(0));
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
@@ -180,7 +181,7 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
     lv3 pixel = lv3_load(camera->right);
     lf cell = depth * (l_sqrt(lv3_dot(pixel, pixel)) * (float)scene->tile);
     while (l_any(rest)) {
-        /* Lanes between the same tile centres and slices, and with the same direction bits in their keys. */
+        /* 2. Lanes between the same tile centres and slices, and with the same direction bits in their keys. */
         int z = l_reduce_max(l_sel_i(rest, z0, L_I(-1000000)));
         li own = rest & L_EQ(z0, L_I(z));
         int tx = l_reduce_max(l_sel_i(own, x0, L_I(-1000000)));
@@ -193,6 +194,7 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
             own &= L_EQ(key & 63, L_I((int)direction));
         }
         rest &= ~own;
+        /* 3. The eight clusters, those that there are. METHODS.md, "Buckets". */
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0));
         lf weights = L_F(0);
         for (int corner = 0; corner < 8; corner++) {
@@ -213,6 +215,7 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
             sum = lv3_along(sum, bucket_irradiance(buckets + (size_t)cluster * (BUCKETS * 4), s), w);
             weights += w;
         }
+        /* 4. Their mean. */
         lf scale = l_sel(L_GT(weights, L_F(0)), l_div(1.0f, l_max(weights, L_F(1e-20f))), L_F(0));
         total = lv3_sel(own, estimate_normalise(sample, lv3_scale(sum, scale)), total);
     }

@@ -62,6 +62,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
     li triangle[VIT_BUNDLE], inside[VIT_BUNDLE];
     int made = 0;
     WORK_BEGIN
+    /* 1. How many of the bundle's pixels cast a ray. */
     bundle_pixel(scene, bundle, &px, &py);
     uint rays = px < scene->width && py < scene->height ? min(scene->width - px, 8u) * min(scene->height - py, 8u) : 0;
     if (VIT_EFFECT_FILM) {
@@ -71,6 +72,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
     }
     if (rays > 0) {
         WORK_ADD(view_rays, rays);
+        /* 2. Bounds of their directions: they hold where no axis has both signs. */
         float ox = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][0] : 0.0f, oy = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][1] : 0.0f;
         bundle_bounds bounds;
         float reach = (float)(scene->width + scene->height), largest = bundle_largest(nodes), least2 = 0;
@@ -78,6 +80,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
                          view_axis(camera, 1, (float)px + ox, (float)py + oy, reach, largest, &bounds.y, &least2) &&
                          view_axis(camera, 2, (float)px + ox, (float)py + oy, reach, largest, &bounds.z, &least2);
         if (one_octant) {
+            /* 3. Down the tree for the bundle; leaves and triangles for each packet, whose rays are made at the first leaf. */
             float scale = vit_div(1.0f + 16 * BUNDLE_SLACK, vit_sqrt(least2)); /* from distances to multiples of directions */
             bundle_walk walk;
             global const float *box;
@@ -98,7 +101,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
                     if (l_any(in))
                         any |= bundle_leaf_nearest(RAY_SCENE, ray + i, leaf, in, t + i, triangle + i);
                 }
-                if (any) {
+                if (any) { /* nothing beyond the farthest of the nearest hits matters any more */
                     lf most = t[0];
                     for (uint i = 1; i < VIT_BUNDLE; i++)
                         most = l_max(most, t[i]);
@@ -106,7 +109,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
                     bounds.limit = limit < 1e38f ? limit * scale : 3e38f;
                 }
             }
-        } else {
+        } else { /* 3. Or each packet by itself. */
             for (uint i = 0; i < VIT_BUNDLE; i++) {
                 ray[i] = view_rays(scene, ROUND, bundle, i, inside + i);
                 t[i] = L_F(3e38f);
@@ -115,6 +118,7 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
             made = 1;
         }
     }
+    /* 4. Hits, packet by packet. */
     for (uint i = 0; i < VIT_BUNDLE; i++) {
         uint first = bundle_sample(scene, bundle, i);
         if (round_skips(first, active)) {

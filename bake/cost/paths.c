@@ -168,13 +168,14 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
     /* Where paths are spread over the pixel, they filter textures themselves. */
     const float cone =
         p->filter == PATH_CENTRE ? sqrtf(fmaf(right.z, right.z, fmaf(right.y, right.y, right.x * right.x))) : 0.0f;
+    /* 1. The ray through the point. */
     vec3 o = vec3_load(c->eye), d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), right, fx), vec3_load(c->down), fy));
     float way = 0.0f;
     for (uint32_t event = 0; event <= CHAIN; event++) {
         float t = 0.0f, b[3], u = 0.0f, unused;
         *rays += 1;
         const uint32_t triangle = photon_rays_nearest(&p->rays, o, d, &t);
-        if (triangle == VIT_NONE) {
+        if (triangle == VIT_NONE) { /* 2. It ends in the sky, */
             double radiance[3];
             wide_sky(&p->wide, d, radiance);
             for (int k = 0; k < 3; k++)
@@ -185,7 +186,7 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
         /* The footprint goes on widening behind a mirror as if it were flat. */
         const photon_surface s = photon_surface_seen(&p->scene, o, d, t, triangle, event ? cone * (way / t) : cone, b);
         const vit_material *m = s.material;
-        if (m->kind == VIT_MATTE) {
+        if (m->kind == VIT_MATTE) { /* 3. or on a matt surface, the view sample, with its direct light, */
             out->hit = true;
             out->place = place_of(&s, s.normal, d);
             const shine_place *q = &out->place;
@@ -203,10 +204,11 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
                 out->place.normal = q->face;
             return;
         }
-        if (m->kind != VIT_MIRROR && !path) {
+        if (m->kind != VIT_MIRROR && !path) { /* 4. or at glass, where each path has a view sample of its own; */
             *out = (view_sample){.random = true, .x = out->x, .y = out->y};
             return;
         }
+        /* 5. or goes on. */
         if (path)
             sequence_point(pcg(seed ^ pcg(OF_CHAIN + event)), *path, &u, &unused);
         for (int k = 0; k < 3; k++)
