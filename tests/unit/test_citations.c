@@ -351,7 +351,7 @@ static void check_years(library *l, const file *f, const file *method) {
 
 /* Keys that the page itself uses, and equations: in order, and those named are there. */
 static void check_method(library *l, const file *f) {
-    regex_t key = compiled("\\[?([A-Z][A-Za-z'-]+ (19|20)[0-9][0-9])[],]");
+    regex_t key = compiled("\\[?([A-Z][A-Za-z'-]+ (19[4-9]|20[0-3])[0-9])[],]");
     regex_t equation = compiled("[Ee]quation \\(([0-9]+)\\)");
     regmatch_t m[2];
     unsigned last = 0;
