@@ -4,7 +4,8 @@
  * A citation is `FILE.md`, or `FILE.md, "Section"`, or `FILE.md, "Section" (7)` with an equation's number, in code, comments
  * and READMEs; the file's path begins at the repository's root or at the file that cites. Code that cites METHODS.md says where
  * in it. A year in a comment is that of a source, whose name stands beside it: [Name Year] of METHODS.md. Texts are read with
- * line ends and comment marks as blanks, so that a citation may run over a line's end. */
+ * line ends and comment marks as blanks, so that a citation may run over a line's end. "name() of FOLDER/FILE" is a function that
+ * is there. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -314,6 +315,22 @@ static void check_source_files(library *l, const file *f) {
     regfree(&source);
 }
 
+/* "name() of kernels/file.cl" in a comment: what is computed in two places says where the other one is. */
+static void check_functions(library *l, const file *f) {
+    regex_t function =
+        compiled("([A-Za-z0-9_]+)\\(\\) +of +((bake|kernels|runtime|include|tests)/[A-Za-z0-9_./-]+\\.(c|h|cl|clh))");
+    regmatch_t m[3];
+    for (size_t at = 0; regexec(&function, f->comment + at, 3, m, 0) == 0; at += (size_t)m[1].rm_eo) {
+        char name[128];
+        const char *where = f->comment + at;
+        const file *cited = find_cited(l, f, where + m[2].rm_so, length_of(m + 2));
+        snprintf(name, sizeof name, "%.*s(", length_of(m + 1), where + m[1].rm_so);
+        if (cited && !strstr(cited->raw, name))
+            fault(l, f, at + (size_t)m[1].rm_so, "no such function there", where + m[1].rm_so, (int)(m[2].rm_eo - m[1].rm_so));
+    }
+    regfree(&function);
+}
+
 /* Is there a "- [Name Year]" in METHODS.md, Name in the text? Without a text: is there exactly this key? */
 static bool has_source(const file *method, const char *key, int length, const char *year, const char *text) {
     for (const char *s = method->raw; (s = strstr(s, "\n- [")) != NULL;) {
@@ -393,8 +410,10 @@ static void check_all(library *l) {
             continue;
         check_citations_of(l, f);
         check_pass_names(l, f);
-        if (is_code(f->path))
+        if (is_code(f->path)) {
+            check_functions(l, f);
             check_years(l, f, method);
+        }
         if (ends_with(f->path, ".md"))
             check_own_sections(l, f);
         if (is_code(f->path) || (ends_with(f->path, ".md") && !ends_with(f->path, "LOG.md"))) /* a log tells of what was */
@@ -432,7 +451,7 @@ static void expect(const char *path, const char *text, const char *fault_or_null
     l->quiet = true;
     add(l, METHOD, strcmp(path, METHOD) == 0 ? text : A_METHOD);
     add(l, "bake/README.md", "# Baker\n\n## Zones and areas\n\n### 2026-11-22: the radius, later\n");
-    add(l, "bake/zones.c", "");
+    add(l, "bake/zones.c", "int zone(int x);");
     if (strcmp(path, METHOD) != 0)
         add(l, path, text);
     check_all(l);
@@ -456,6 +475,7 @@ static void each_kind_of_wrong_citation_is_found(void **state) {
     expect("runtime/README.md", "# R\n(Rooms, below)\n", "no such section here: Rooms");
     expect("runtime/README.md", "# R\n`bones.c`\n", "no such file: bones.c");
     expect("bake/a.c", "/* as\n   in bake/bones.c */", "bake/a.c:2: no such file: bake/bones.c");
+    expect("bake/a.c", "/* cone() of\n * bake/zones.c */", "no such function there: cone() of");
     expect("kernels/a.cl", "/* Pass 1: hits */", "say its name: Pass 1");
     expect(METHOD, "# M\n[Woop 2013]\n## The four systems\n", "no such source below: Woop 2013");
     expect(METHOD, "# M\n    a (1)\n    b (3)\n", "equation out of order:  (3)");
@@ -469,7 +489,9 @@ static void right_citations_pass(void **state) {
         "/* METHODS.md, \"Rays\" (1), and\n * kernels/METHODS.md,\n * \"Splats\". After Woop and others, JCGT 2(1), 2013. */",
         NULL);
     expect("bake/a.c",
-           "/* README.md, \"Zones and areas\"; bake/README.md, \"The radius\"; x = 1920; Roberts 2018. */ int y = 2001;", NULL);
+           "/* zone() of bake/zones.c; README.md, \"Zones and areas\"; bake/README.md, \"The radius\"; x = 1920; Roberts 2018. "
+           "*/ int y = 2001;",
+           NULL);
     expect("bake/a.c", "char *s = \"in 1999\"; /* https://x.org/README.md */", NULL);
     expect("runtime/README.md", "# R\n## Rooms\n(Rooms, below) `zones*.c` `bake/zones.c` `../bake/zones.c` `build/x.h`\n",
            NULL);
