@@ -113,7 +113,7 @@ static inline cost_results lab_results(uint32_t width, uint32_t height) {
                             {"indirect samples", "indirect at 1/16", 12.9, 0.083, 0.42},
                             {"several", "photons 65536, indirect at 1/4", 23.9, 0.041, 0.21},
                             {"several", "photons 65536, indirect at 1/16, radius 0.5", 17.5, 0.059, 0.26}};
-    cost_results r = {.scene = "Made-up hall",
+    cost_results r = {.scene = "Made-up hall", /* 1. of the whole sweep */
                       .device = "Portable Computing Language / pthread-made-up",
                       .cpu = "Made-up processor, 2 cores",
                       .width = width * 4,
@@ -131,7 +131,7 @@ static inline cost_results lab_results(uint32_t width, uint32_t height) {
     static const char *const works[LAB_WORKS] = {"rays", "nodes visited", "cluster pairs", "evaluations", "bytes moved"};
     for (uint32_t w = 0; w < LAB_WORKS; w++)
         (void)snprintf(r.work_names[w], sizeof r.work_names[w], "%s", works[w]);
-    r.reference =
+    r.reference = /* 2. of the reference */
         (reference){.width = width, .height = height, .samples = 4096, .error = 0.0004, .seconds = 412, .rays = 3100000000u};
     r.reference.direct = malloc((size_t)width * height * 3 * sizeof(double));
     r.reference.limited = malloc((size_t)width * height * 3 * sizeof(double));
@@ -142,7 +142,7 @@ static inline cost_results lab_results(uint32_t width, uint32_t height) {
                 r.reference.direct[((size_t)y * width + x) * 3 + c] = 0.6 * light;
                 r.reference.limited[((size_t)y * width + x) * 3 + c] = 0.4 * light;
             }
-    r.settings = calloc(LAB_SETTINGS, sizeof r.settings[0]);
+    r.settings = calloc(LAB_SETTINGS, sizeof r.settings[0]); /* 3. of each setting */
     for (uint32_t i = 0; i < LAB_SETTINGS; i++)
         lab_setting(&r, i, rows[i].knob, rows[i].name, rows[i].ms, rows[i].nmse, rows[i].relmse);
     lab_fronts(&r);

@@ -226,7 +226,7 @@ static void run(csv *c, size_t i) {
     pipeline_packed packed;
     vit_text why = {""};
     char path[256], size[32];
-    write_scene(i);
+    write_scene(i); /* 1. the pack with the effect */
     path_of("scene.cfg", path);
     TRY(pipeline_read(path, &p.scene, &why));
     TRY(pipeline_load(&p, &why));
@@ -236,11 +236,11 @@ static void run(csv *c, size_t i) {
         bench_fail("%s: its scene does not call for it: %s", rows[i].name, path);
     const uint64_t lamps = VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(DIRECTIONAL); /* the scene's only light is such a one */
     const uint64_t dropped = rows[i].effect | (rows[i].effect & lamps ? VIT_BIT(LIGHTS) : 0);
-    size_t less_size;
+    size_t less_size; /* 2. the pack without it */
     void *less = NULL;
     TRY(adds_without(&packed.sections, dropped, &less, &less_size, &why));
     const images_grid grid = {(uint32_t)width(), (uint32_t)height(), EVERY};
-    reference truth;
+    reference truth; /* 3. the path tracer's picture of the first */
     const reference_input in = {.sections = &packed.sections,
                                 .every = EVERY,
                                 .bounces = packed.plan.scene.bounces,
@@ -248,7 +248,7 @@ static void run(csv *c, size_t i) {
                                 .max_samples = bench_smoke() ? 16 : 4096};
     TRY(reference_render(&in, &truth, &why));
     const size_t floats = (size_t)truth.width * truth.height * 3;
-    uint64_t bytes[2];
+    uint64_t bytes[2]; /* 4. both pictures, and their errors */
     float *with = render(packed.bytes, packed.size, &grid, &bytes[0]), *bare = render(less, less_size, &grid, &bytes[1]);
     float *picture = bench_array(floats, sizeof *picture);
     double *whole = bench_array(floats, sizeof *whole);
@@ -259,7 +259,7 @@ static void run(csv *c, size_t i) {
     write_picture(rows[i].name, "with", with, truth.width, truth.height);
     write_picture(rows[i].name, "without", bare, truth.width, truth.height);
     write_picture(rows[i].name, "reference", picture, truth.width, truth.height);
-    player players[2];
+    player players[2]; /* 5. times, in turns */
     player_open(&players[0], packed.bytes, packed.size);
     player_open(&players[1], less, less_size);
     for (int round = -1; round < bench_rounds(ROUNDS); round++)
@@ -269,7 +269,7 @@ static void run(csv *c, size_t i) {
     printf("%-12s %8.2f %8.2f %+8.2f %10.2f %+9.2f %9.5f %9.5f %+9.5f %+7.2f %9.5f\n", rows[i].name, ms[0], ms[1],
            ms[0] - ms[1], (double)bytes[0] * 1e-6, ((double)bytes[0] - (double)bytes[1]) * 1e-6, a.nmse, b.nmse,
            b.nmse - a.nmse, 100 * a.bias, truth.error);
-    fflush(stdout);
+    fflush(stdout); /* 6. the row as CSV */
     snprintf(size, sizeof size, "%dx%d", width(), height());
     csv_row(c, rows[i].name, size, "ms with", &players[0].ms, "ms");
     csv_row(c, rows[i].name, size, "ms without", &players[1].ms, "ms");

@@ -162,7 +162,7 @@ static void one_reflection_is_the_radiosity_integral(void **state) {
     reference r;
     void *pack = test_packs_load(test_pack("list"), &size);
     const pack_sections s = pack_sections_of(pack);
-    static box b;
+    static box b; /* 1. the box, and what stands in it */
     b = (box){.meta = s.data[VIT_SECTION_META],
               .triangles = s.data[VIT_SECTION_GEOM],
               .attributes = s.data[VIT_SECTION_ATTR],
@@ -174,7 +174,7 @@ static void one_reflection_is_the_radiosity_integral(void **state) {
             b.blockers[b.blocker_count++] = i;
         }
     const reference_input in = {.sections = &s, .every = EVERY, .bounces = 2, .target = 1e-9, .max_samples = 65536};
-    if (reference_render(&in, &r, &why) != VIT_OK)
+    if (reference_render(&in, &r, &why) != VIT_OK) /* 2. by paths */
         fail_msg("%s", why.text);
     const vit_camera *c = s.data[VIT_SECTION_CAMS];
     double found = 0, wanted = 0, squares = 0, stated = 0;
@@ -186,7 +186,7 @@ static void one_reflection_is_the_radiosity_integral(void **state) {
         if (!look(&b, c, i % r.width * EVERY + EVERY / 2, i / r.width * EVERY + EVERY / 2, &triangle, &x, &n) ||
             near_another(&b, x, n))
             continue;
-        reflected(&b, x, n, e);
+        reflected(&b, x, n, e); /* 3. by quadrature, where no edge is near */
         const vit_material *m = b.materials + (b.attributes[triangle].material & VIT_MATERIAL_INDEX);
         points++;
         for (int k = 0; k < 3; k++) {

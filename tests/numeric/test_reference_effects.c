@@ -263,7 +263,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
     double wanted[SIDE * SIDE];
     reference_lab l;
     room *r = room_empty(0.6f);
-    add_floor(r);
+    add_floor(r); /* 1. the picture and its gutter */
     for (int y = -1; y <= SKY; y++)
         for (int x = -1; x <= SKY; x++) {
             double d[3];
@@ -295,7 +295,7 @@ static void a_floor_under_a_picture_of_the_sky(void **state) {
                 t->radiance[0] = 4000;
         }
     lab_open(&l, r, SIDE, 0, 2);
-    see_floor(&l, eye);
+    see_floor(&l, eye); /* 2. the floor under it, against the sum over the picture's texels */
     l.meta.effects = VIT_BIT(SKY_LIGHT) | VIT_BIT(SKY_IMAGE);
     l.meta.sky_size = SKY;
     l.sections.data[VIT_SECTION_SKYT] = picture;
@@ -643,7 +643,7 @@ static void furnaces_stay_as_they_are(void **state) {
             reference_lab l;
             const double rho = 0.6, radiance = 2;
             double sum = 0, stated = 0;
-            room *r = closed ? room_closed((float)rho) : room_empty(1);
+            room *r = closed ? room_closed((float)rho) : room_empty(1); /* 1. a floor or walls, and the block */
             if (!closed)
                 add_floor(r);
             if (closed)
@@ -652,7 +652,7 @@ static void furnaces_stay_as_they_are(void **state) {
             add_block(r);
             lab_open(&l, r, SIDE, 0, 3);
             see_floor(&l, eye);
-            if (closed) {
+            if (closed) { /* 2. the same radiance from all round, by walls or by the sky */
                 lab_look(&l, 0, eye, corner, right, down);
                 for (uint32_t w = 0; w < WALLS; w++)
                     emits(&l, w, (float)(radiance * (1 - rho)), 1);
@@ -664,12 +664,12 @@ static void furnaces_stay_as_they_are(void **state) {
                 }
             } else
                 sky_of(&l, (float)radiance);
-            const uint32_t block = closed ? 8 : 2;
+            const uint32_t block = closed ? 8 : 2; /* 3. what the block is made of */
             material_of(&l, block, materials[i].kind, materials[i].specular, 1, 1.5f);
             for (int k = 0; k < 3; k++)
                 l.room->materials[block].albedo[k] = materials[i].albedo;
             l.in.max_samples = 512;
-            reference f = lab_render(&l, 0);
+            reference f = lab_render(&l, 0); /* 4. every pixel sees that radiance */
             for (uint32_t p = 0; p < SIDE * SIDE; p++) {
                 const double total = f.direct[3 * p] + f.unlimited[3 * p];
                 sum += total / (SIDE * SIDE);
