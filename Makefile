@@ -30,7 +30,7 @@ BASE += $(if $(filter s390x-%,$(MACHINE)),-fexcess-precision=fast)
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
-KERNELS := records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh bundle.clh surface.clh shine.clh cells.clh visibility.cl chains.cl samples.cl direct.cl \
+KERNELS := ../include/vitrine_frame.h records.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh bundle.clh surface.clh shine.clh cells.clh visibility.cl chains.cl samples.cl direct.cl \
            skylight.cl photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl sparse.cl film.cl resolve.cl
 
 RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
@@ -90,7 +90,7 @@ $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 
 $(B)/kernel_list.h: Makefile
 	@mkdir -p $(@D)
-	@for f in $(filter-out records.clh,$(KERNELS)); do echo "#include \"kernels/$$f\""; done > $@
+	@for f in $(filter-out %.h records.clh,$(KERNELS)); do echo "#include \"kernels/$$f\""; done > $@
 $(B)/host_programs.h: Makefile
 	@mkdir -p $(@D)
 	@for p in $(HOST_PROGRAMS); do echo "PROGRAM($${p%_*}, $${p##*_})"; done > $@
@@ -171,7 +171,7 @@ $(B)/vitrine.pc: Makefile
 	   'Description: plays baked 3D scenes with the same bits on every device' \
 	   'Version: $(shell sed -n 's/.*VIT_VERSION "\(.*\)"/\1/p' include/vitrine.h)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lvitrine $(LIBS_RUNTIME)' > $@
 
-# The library, its header and the tools under $(prefix).
+# The library, its headers and the tools under $(prefix).
 install: all
 	@rm -f $(B)/vitrine.pc
 	@$(MAKE) --no-print-directory $(B)/vitrine.pc
@@ -179,7 +179,7 @@ install: all
 	install -m 644 $(B)/vitrine.pc $(DESTDIR)$(prefix)/lib/pkgconfig
 	install -m 755 $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(DESTDIR)$(prefix)/bin
 	install -m 644 $(B)/libvitrine.a $(DESTDIR)$(prefix)/lib
-	install -m 644 include/vitrine.h $(DESTDIR)$(prefix)/include
+	install -m 644 include/vitrine.h include/vitrine_frame.h $(DESTDIR)$(prefix)/include
 
 help:
 	@echo "make demo     install what is missing, build, bake our scenes, play and verify them, pictures in build/demo"

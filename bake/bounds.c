@@ -167,7 +167,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         *nodes = t.nodes > *nodes ? t.nodes : *nodes;
         *list = t.list > *list ? t.list : *list;
         vit_gold *g = &in->gold[*next];
-        split(g->xrgb8888, vit_hash_frame(r.frame, VIT_FORMAT_XRGB8888, r.stride * s->height));
+        split(vit_gold_hash(g, VIT_FORMAT_XRGB8888), vit_hash_frame(r.frame, VIT_FORMAT_XRGB8888, r.stride * s->height));
         g->nodes = t.nodes;
         g->clusters = t.clusters;
         g->photons = t.photons;
@@ -182,11 +182,16 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
 }
 
 static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why) {
+    static const char *const names[] = {
+#define X(name, word, bytes, word_bytes, meaning) #name " hashes",
+        VIT_FORMATS(X)
+#undef X
+    };
     run r;
     vit_status status = run_begin(&r, in, in->sections, format, false, why);
     for (uint32_t i = 0; i < in->scene->frames && status == VIT_OK; i++) {
-        status = frame(in, &r, i, format == VIT_FORMAT_RGB565 ? "RGB565 hashes" : "RGBA32F hashes", why);
-        split(format == VIT_FORMAT_RGB565 ? in->gold[i].rgb565 : in->gold[i].rgba32f, vit_hash_frame(r.frame, format, r.stride * in->scene->height));
+        status = frame(in, &r, i, names[format], why);
+        split(vit_gold_hash(&in->gold[i], format), vit_hash_frame(r.frame, format, r.stride * in->scene->height));
     }
     run_end(&r);
     return status;
@@ -242,7 +247,7 @@ vit_status bounds_measure(bounds_input *in, vit_text *why) {
         s->max_nodes = nodes;
         s->max_list = list;
     }
-    for (int f = VIT_FORMAT_RGB565; f <= VIT_FORMAT_RGBA32F && in->all_formats && status == VIT_OK; f++)
+    for (int f = 1; f < VIT_FORMAT_COUNT && in->all_formats && status == VIT_OK; f++)
         status = hash_format(in, (vit_format)f, why);
     return status;
 }

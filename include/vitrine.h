@@ -19,6 +19,8 @@
 #ifndef VITRINE_H
 #define VITRINE_H
 
+#include "vitrine_frame.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -47,36 +49,6 @@ typedef enum vit_status {
 typedef struct vit_text {
     char text[512];
 } vit_text;
-
-/* Framebuffer formats: X(name, bytes a pixel, meaning). Words, half words and floats are in the machine's byte order. */
-#define VIT_FORMATS(X)                                                                                                           \
-    X(XRGB8888, 4, "0x00RRGGBB words, sRGB curve")                                                                               \
-    X(RGB565, 2, "rrrrrggggggbbbbb half words, sRGB curve")                                                                      \
-    X(RGBA32F, 16, "four floats, linear radiance times exposure, alpha 1")
-
-typedef enum vit_format {
-#define X(name, bytes, meaning) VIT_FORMAT_##name,
-    VIT_FORMATS(X)
-#undef X
-} vit_format;
-
-/* What the frame shows: X(name, meaning). All but the first show the method's insides. */
-#define VIT_VIEWS(X)                                                                                                             \
-    X(final, "the picture")                                                                                                      \
-    X(direct, "direct light alone")                                                                                              \
-    X(indirect, "indirect light alone, albedo applied")                                                                          \
-    X(clusters, "view-sample clusters, a colour each")                                                                           \
-    X(photons, "photons as dots over the picture")                                                                               \
-    X(heat, "photons of each pixel's cluster as a heat map")                                                                     \
-    X(normals, "shading normals as colours")                                                                                     \
-    X(depth, "view depth, from bright to dark over what the path sees, in even steps of its logarithm")                                                                                       \
-    X(albedo, "diffuse reflectance")
-
-typedef enum vit_view {
-#define X(name, meaning) VIT_VIEW_##name,
-    VIT_VIEWS(X)
-#undef X
-} vit_view;
 
 /* What to open and how; zero means the default for every field but pack and arena. */
 typedef struct vit_open_info {

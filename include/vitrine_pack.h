@@ -80,6 +80,18 @@ typedef struct vit_pack_entry {
  * `why` may be NULL. */
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
 
+/* The hash of frames in this format. */
+static inline vit_u32 *vit_gold_hash(vit_gold *g, vit_format format) {
+    switch (format) {
+#define X(name, word, bytes, word_bytes, meaning)                                                                                \
+    case VIT_FORMAT_##name:                                                                                                      \
+        return g->word;
+        VIT_FORMATS(X)
+#undef X
+    }
+    return 0;
+}
+
 /* The effect `bit` and all that make no sense without it. */
 static inline uint64_t vit_effects_upon(uint64_t bit) {
 #define X(effect, needed)                                                                                                        \

@@ -2,35 +2,35 @@
  * view samples, at other places in their pixels, only where the first copy shows an edge: Whitted, CACM 23(6), 1980. Filters are where
  * the copies lie (vit_scene.offset): filter importance sampling, Ernst et al. 2006, so that no pixel writes to another. */
 
-/* 1 << VIT_VIEW. */
-enum {
-    VIEW_FINAL = 1,
-    VIEW_DIRECT = 2,
-    VIEW_INDIRECT = 4,
-    VIEW_CLUSTERS = 8,
-    VIEW_PHOTONS = 16,
-    VIEW_HEAT = 32,
-    VIEW_NORMALS = 64,
-    VIEW_DEPTH = 128,
-    VIEW_ALBEDO = 256
-};
+/* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
+static inline int view_light(vit_view view)
+{
+    switch (view) {
+#define X(name, light, meaning) \
+    case VIT_VIEW_##name: \
+        return light;
+        VIT_VIEWS(X)
+#undef X
+    }
+    return 0;
+}
 
 /* What a pixel's sample sees, W/(m2 sr), by VIT_VIEW, before exposure. */
 static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo, global const float *direct, global const float *indirect,
                                   global const uint *gloss, global const float *rays)
 {
     lv3 c = lv3_set(L_F(0), L_F(0), L_F(0));
-    int view = 1 << VIT_VIEW;
-    if (view & (VIEW_FINAL | VIEW_DIRECT | VIEW_PHOTONS))
+    int light = view_light((vit_view)VIT_VIEW);
+    if (light & VIT_SHOWS_DIRECT)
         c = lv3_load_planes(direct, n, first);
-    if (VIT_EFFECT_PHOTONS && (view & (VIEW_FINAL | VIEW_INDIRECT | VIEW_PHOTONS))) {
+    if (VIT_EFFECT_PHOTONS && (light & VIT_SHOWS_INDIRECT)) {
         lv3 a = l_decode_albedo(L_LOAD(albedo + first)), e = lv3_load_planes(indirect, n, first);
         if (VIT_EFFECT_GLOSS) /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
             a = lv3_along(a, l_decode_albedo(L_LOAD(gloss + first)), L_F(1));
         a = lv3_scale(a, L_F(VIT_INV_PI));
         c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
     }
-    if (VIT_EFFECT_CHAINS && (view & (VIEW_FINAL | VIEW_DIRECT | VIEW_INDIRECT | VIEW_PHOTONS))) {
+    if (VIT_EFFECT_CHAINS && light != 0) {
         lv3 w = chain_weight(rays, n, first);
         c = lv3_set(c.x * w.x, c.y * w.y, c.z * w.z);
     }

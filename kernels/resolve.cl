@@ -1,7 +1,6 @@
 /* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (27): radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
- * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine.h). */
+ * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine_frame.h). */
 
-enum { FORMAT_XRGB8888, FORMAT_RGB565, FORMAT_RGBA32F };
 /* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */
 static inline lf srgb_curve(lf x)
 {
@@ -16,40 +15,58 @@ static inline li to_steps(lf x, float steps)
     return L_TRUNC(fma(x, L_F(steps), L_F(0.5f)));
 }
 
+static inline void write_floats(const int *at, const int *in, lv3 c, global float *framebuffer)
+{
+    float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
+    L_STORE(c.x, r);
+    L_STORE(c.y, g);
+    L_STORE(c.z, b);
+    for (int i = 0; i < VIT_LANES; i++)
+        if (in[i])
+            vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)at[i], framebuffer);
+}
+
+static inline void write_half_words(const int *at, const int *in, lv3 c, global ushort *framebuffer)
+{
+    int v[VIT_LANES];
+    L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
+    for (int i = 0; i < VIT_LANES; i++)
+        if (in[i])
+            framebuffer[at[i]] = (ushort)v[i];
+}
+
+static inline void write_words(const int *at, const int *in, li inside, lv3 c, global uint *framebuffer)
+{
+    int v[VIT_LANES];
+    L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
+    if (VIT_LANES >= 4 && !l_any(~inside)) { /* lanes are rows of four pixels */
+        for (int i = 0; i < VIT_LANES; i += 4)
+            for (int k = 0; k < 4; k++)
+                framebuffer[at[i] + k] = (uint)v[i + k];
+        return;
+    }
+    for (int i = 0; i < VIT_LANES; i++)
+        if (in[i])
+            framebuffer[at[i]] = (uint)v[i];
+}
+
 /* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
 static inline void write_pixels(global const vit_scene *scene, li x, li y, li inside, lv3 c, global uchar *framebuffer)
 {
     int at[VIT_LANES], in[VIT_LANES];
     L_STORE(y * (int)scene->width + x, at);
     L_STORE(inside, in);
-    if (VIT_FORMAT == FORMAT_RGBA32F) {
-        float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
-        L_STORE(c.x, r);
-        L_STORE(c.y, g);
-        L_STORE(c.z, b);
-        for (int i = 0; i < VIT_LANES; i++)
-            if (in[i])
-                vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)at[i], (global float *)framebuffer);
-        return;
+    switch ((vit_format)VIT_FORMAT) {
+    case VIT_FORMAT_XRGB8888:
+        write_words(at, in, inside, c, (global uint *)framebuffer);
+        break;
+    case VIT_FORMAT_RGB565:
+        write_half_words(at, in, c, (global ushort *)framebuffer);
+        break;
+    case VIT_FORMAT_RGBA32F:
+        write_floats(at, in, c, (global float *)framebuffer);
+        break;
     }
-    int v[VIT_LANES];
-    if (VIT_FORMAT == FORMAT_RGB565) {
-        L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
-        for (int i = 0; i < VIT_LANES; i++)
-            if (in[i])
-                ((global ushort *)framebuffer)[at[i]] = (ushort)v[i];
-        return;
-    }
-    L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
-    if (VIT_LANES >= 4 && !l_any(~inside)) { /* lanes are rows of four pixels */
-        for (int i = 0; i < VIT_LANES; i += 4)
-            for (int k = 0; k < 4; k++)
-                ((global uint *)framebuffer)[at[i] + k] = (uint)v[i + k];
-        return;
-    }
-    for (int i = 0; i < VIT_LANES; i++)
-        if (in[i])
-            ((global uint *)framebuffer)[at[i]] = (uint)v[i];
 }
 
 /* Black, blue, green, yellow, red, white over 0..1. */
@@ -158,7 +175,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
     float exposure = cameras[frame].exposure;
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0)), c = zero;
-    int view = 1 << VIT_VIEW, display = 0; /* is c a display value already? */
+    int display = 0; /* is c a display value already? */
     if (VIT_EFFECT_FILM) {
         c = lv3_load_planes(film, n, first);
         if (VIT_EFFECT_ANTIALIAS) {
@@ -166,31 +183,43 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         }
     } else
         c = sample_radiance(n, first, albedo, direct, indirect, gloss, rays);
-    if (VIT_EFFECT_PHOTONS && (view & (VIEW_CLUSTERS | VIEW_HEAT))) {
-        lu key = L_LOAD(keys + first);
-        c = view == VIEW_HEAT ? cluster_heat(scene, key, max_nodes, masks, prefix, list_count)
-                              : cluster_colour(key, L_LOAD(normal + first));
-        c = lv3_sel(L_NE(L_AS_INT(key), L_I((int)VIT_NONE)), c, zero);
-        display = 1;
-    }
-    if (view == VIEW_NORMALS) {
+    switch ((vit_view)VIT_VIEW) {
+    case VIT_VIEW_final:
+    case VIT_VIEW_direct:
+    case VIT_VIEW_indirect:
+    case VIT_VIEW_photons:
+        break;
+    case VIT_VIEW_clusters:
+    case VIT_VIEW_heat:
+        if (VIT_EFFECT_PHOTONS) {
+            lu key = L_LOAD(keys + first);
+            c = VIT_VIEW == VIT_VIEW_heat ? cluster_heat(scene, key, max_nodes, masks, prefix, list_count)
+                                          : cluster_colour(key, L_LOAD(normal + first));
+            c = lv3_sel(L_NE(L_AS_INT(key), L_I((int)VIT_NONE)), c, zero);
+            display = 1;
+        }
+        break;
+    case VIT_VIEW_normals: {
         lv3 s = l_decode_normal(L_LOAD(normal + first));
         c = lv3_sel(hit, lv3_set(fma(s.x, L_F(0.5f), L_F(0.5f)), fma(s.y, L_F(0.5f), L_F(0.5f)), fma(s.z, L_F(0.5f), L_F(0.5f))), zero);
         display = 1;
+        break;
     }
-    if (view == VIEW_DEPTH) {
+    case VIT_VIEW_depth: {
         lf depth = VIT_EFFECT_CHAINS ? chain_length(rays, n, first) : L_LOAD(hit_distance + first);
         lf shown = depth_shade(scene, cameras + frame, bvh, l_sel(hit, depth, L_F(scene->slice_near)));
         c = lv3_sel(hit, lv3_set(shown, shown, shown), zero);
         display = 1;
+        break;
     }
-    if (view == VIEW_ALBEDO) {
+    case VIT_VIEW_albedo:
         c = lv3_sel(hit, l_decode_albedo(L_LOAD(albedo + first)), zero);
         exposure = 1.0f;
+        break;
     }
     if (!display)
         c = lv3_scale(c, L_F(exposure));
-    if (VIT_FORMAT != FORMAT_RGBA32F && !display)
+    if (VIT_FORMAT != VIT_FORMAT_RGBA32F && !display)
         c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));
     if (VIT_EFFECT_DOTS)
         c = over_dots(scene, x, y, inside, c, dots, photons);

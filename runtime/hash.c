@@ -3,6 +3,7 @@
  * comparable anywhere. Numbers wider than a byte are hashed as little-endian machines have them.
  */
 #include "byte_order.h"
+#include "passes.h"
 #include "xxh3.h"
 
 uint64_t vit_hash(const void *data, size_t bytes) {
@@ -10,5 +11,5 @@ uint64_t vit_hash(const void *data, size_t bytes) {
 }
 
 uint64_t vit_hash_frame(const void *pixels, vit_format format, size_t bytes) {
-    return vit_hash_words(pixels, bytes, format == VIT_FORMAT_RGB565 ? 2 : 4);
+    return vit_hash_words(pixels, bytes, vit_format_word(format));
 }

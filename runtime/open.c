@@ -12,9 +12,9 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
         bad = "group must be 0 or a power of two up to 256";
     else if (info->threads > 256)
         bad = "threads must be 0 to 256";
-    else if ((unsigned)info->format > VIT_FORMAT_RGBA32F)
+    else if ((unsigned)info->format >= VIT_FORMAT_COUNT)
         bad = "no such format";
-    else if ((unsigned)info->view > VIT_VIEW_albedo)
+    else if ((unsigned)info->view >= VIT_VIEW_COUNT)
         bad = "no such view";
     else if (info->max_nodes > 1u << 26 || info->max_list > 1u << 28)
         bad = "max_nodes is at most 2^26, max_list 2^28";
@@ -27,7 +27,8 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
 }
 
 static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
-    vit_limits l = {.effects = s->effects, .max_nodes = s->max_nodes, .max_list = s->max_list, .format = info->format, .view = info->view};
+    vit_limits l = {
+        .effects = s->effects, .max_nodes = s->max_nodes, .max_list = s->max_list, .format = info->format, .view = info->view};
     l.lanes = info->lanes;
     l.group = info->group;
     if (info->max_nodes)
@@ -44,9 +45,7 @@ static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_DENSE;
     if (s->effects & (ON(MIRROR) | ON(GLASS)))
         l.effects |= ON_CHAINS;
-    /* Views of the method's insides show the first sample of a pixel. */
-    const int light = info->view == VIT_VIEW_final || info->view == VIT_VIEW_direct || info->view == VIT_VIEW_indirect || info->view == VIT_VIEW_photons;
-    if (light && (s->effects & (ON(ANTIALIAS) | ON(GLASS))))
+    if (vit_view_light(info->view) != 0 && (s->effects & (ON(ANTIALIAS) | ON(GLASS))))
         l.effects |= ON_FILM;
     l.layers = l.effects & ON_FILM && s->effects & ON(GLASS) ? 2 : 1;
     l.rounds = l.effects & ON_FILM ? l.layers * s->copies : 1;
@@ -57,8 +56,8 @@ static size_t round_up(size_t bytes) {
     return (bytes + 63) / 64 * 64;
 }
 
-/* What the pack's sections take in the arena where they cannot be used as the file has them. Less than the pack's size and a cache line
- * each. */
+/* What the pack's sections take in the arena where they cannot be used as the file has them. Less than the pack's size and a
+ * cache line each. */
 static size_t swapped_bytes(const vit_pack *pack) {
     size_t sum = 0;
     for (int i = 0; VIT_BIG_ENDIAN && i < VIT_SECTION_COUNT; i++)
@@ -131,8 +130,8 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
 }
 
 /* Lays vit, the device's state and what was swapped out in the arena. */
-static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device, vit **out,
-                             vit_device_setup *setup, vit_text *why) {
+static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device,
+                             vit **out, vit_device_setup *setup, vit_text *why) {
     size_t need = host_bytes(device, pack, l, info->framebuffer != NULL);
     if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need) {
         snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", need);
@@ -153,8 +152,8 @@ static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, co
     return VIT_OK;
 }
 
-/* Devices leave work to the first run of a kernel: PoCL compiles it again for its size of work-group, drivers of GPUs load it. So frame 0
- * is run once, with all its sizes, and what it left behind is taken back. */
+/* Devices leave work to the first run of a kernel: PoCL compiles it again for its size of work-group, drivers of GPUs load it.
+ * So frame 0 is run once, with all its sizes, and what it left behind is taken back. */
 static vit_status warm_up(vit *v, vit_text *why) {
     if (!v->device->rewind)
         return VIT_OK;
@@ -203,11 +202,10 @@ void vit_close(vit *v) {
 }
 
 uint64_t vit_golden(const vit *v, uint32_t index) {
-    const vit_gold *gold = v->pack.section[VIT_SECTION_GOLD];
-    if (!gold || index >= v->pack.scene->frames || v->limits.view != VIT_VIEW_final)
+    const vit_gold *golds = v->pack.section[VIT_SECTION_GOLD];
+    if (!golds || index >= v->pack.scene->frames || v->limits.view != VIT_VIEW_final)
         return 0;
-    const uint32_t *h = v->limits.format == VIT_FORMAT_XRGB8888 ? gold[index].xrgb8888
-                        : v->limits.format == VIT_FORMAT_RGB565 ? gold[index].rgb565
-                                                                : gold[index].rgba32f;
+    vit_gold gold = golds[index];
+    const uint32_t *h = vit_gold_hash(&gold, v->limits.format);
     return (uint64_t)h[1] << 32 | h[0];
 }

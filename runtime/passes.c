@@ -34,11 +34,29 @@ int vit_buffer_called(uint32_t buffer, const vit_limits *l) {
 
 uint32_t vit_format_bytes(vit_format format) {
     static const uint32_t bytes[] = {
-#define X(name, size, meaning) size,
+#define X(name, word, size, word_bytes, meaning) size,
         VIT_FORMATS(X)
 #undef X
     };
     return bytes[format];
+}
+
+uint32_t vit_format_word(vit_format format) {
+    static const uint32_t bytes[] = {
+#define X(name, word, size, word_bytes, meaning) word_bytes,
+        VIT_FORMATS(X)
+#undef X
+    };
+    return bytes[format];
+}
+
+int vit_view_light(vit_view view) {
+    static const int shows[] = {
+#define X(name, light, meaning) light,
+        VIT_VIEWS(X)
+#undef X
+    };
+    return shows[view];
 }
 
 uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits *l) {
@@ -56,8 +74,9 @@ uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits 
 }
 
 uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l) {
-    const int halves = (buffer == B_position && (l->effects & ON(SMALL_SAMPLES))) || (buffer == B_framebuffer && l->format == VIT_FORMAT_RGB565);
-    return halves ? 2 : 4;
+    if (buffer == B_framebuffer)
+        return vit_format_word(l->format);
+    return buffer == B_position && (l->effects & ON(SMALL_SAMPLES)) ? 2 : 4;
 }
 
 const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {

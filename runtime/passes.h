@@ -179,7 +179,11 @@ uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits 
 uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l);
 /* Name of an effect that calls for the buffer: "always", or of the first. */
 const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l);
+/* Bytes of a pixel, and of the words that it is made of. */
 uint32_t vit_format_bytes(vit_format format);
+uint32_t vit_format_word(vit_format format);
+/* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
+int vit_view_light(vit_view view);
 
 /* Work-items a work-group, and in all, of a pass at a level. */
 void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level, size_t *local, size_t *global);

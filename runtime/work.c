@@ -13,38 +13,40 @@
     X(activate, z->activate *(z->samples / 16))                                                                                \
     X(chains, (4 + 4 + 4 + 4 + 40) * z->samples + HITS)                                                                        \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples + z->cell * w[VIT_WORK_surface_points] + HITS)                                                                  \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples +                                \
+                   z->cell * w[VIT_WORK_surface_points] + HITS)                                                                \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
     X(area_light, (LIT + sizeof(vit_emitter) * z->area_samples) * z->samples)                                                  \
-    X(sky_light, (4 + z->position + 4 + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) * z->samples) \
+    X(sky_light,                                                                                                               \
+      (4 + z->position + 4 + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) * z->samples)        \
     X(sky_filter, (z->position + 4 + 4 + z->gloss / 2 + z->skylight + 12 + 12) * z->samples)                                   \
     X(clear_masks, 4 * z->masks)                                                                                               \
-    X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                                                         \
-    X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                          \
+    X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                  \
+    X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                 \
     X(number_nodes, (4 + 4) * z->masks)                                                                                        \
     X(make_nodes, (4 + 4) * z->masks + (4 + 4 + BOX) * z->nodes)                                                               \
-    X(cluster_bounds, (4 + z->position + 4 + z->zones) * z->samples + BOX * (z->nodes - z->inner))                                                 \
+    X(cluster_bounds, (4 + z->position + 4 + z->zones) * z->samples + BOX * (z->nodes - z->inner))                             \
     X(node_bounds, (4 + 4 + BOX) * z->inner + BOX * (z->nodes - 1))                                                            \
     X(splat_count, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4) * z->listed)                                                  \
     X(splat_place, (4 + 4 + 4) * z->listed)                                                                                    \
     X(splat_write, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + 4) * z->listed + 4 * z->entries)                             \
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
-    X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])                      \
-    X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])                           \
-    X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])                                \
-    X(interpolate, (4 + z->position + 4 + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)                                           \
+    X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])  \
+    X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])       \
+    X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
+    X(interpolate, (4 + z->position + 4 + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)                       \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
     X(expose, (z->shown + 12 + 12 + 4) * z->samples)                                                                           \
-    X(resolve, (z->film ? 12 : z->shown) * z->samples + z->pixel * z->pixels)                                                                   \
+    X(resolve, (z->film ? 12 : z->shown) * z->samples + z->pixel * z->pixels)                                                  \
     X(account, (4 + 4 + 4) * (uint64_t)VIT_COUNTER_COUNT)
 
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
 #define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
 #define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->view + z->gloss) /* what passes of direct light read and write a sample */
-#define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
+#define BOX_BYTES(zones) (48 + (zones))                              /* of positions and of normals, and the zones accepted */
 #define BOX BOX_BYTES(z->zones)
 
 typedef struct sizes {
@@ -61,18 +63,30 @@ typedef struct sizes {
     uint64_t activate;             /* bytes a block of samples: active, edges, split */
     uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
-    uint64_t skylight;             /* bytes a sample: of the sky's irradiance, and of what the lobe reflects of it */
-    uint64_t zones, baked, cell;   /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
+    uint64_t skylight; /* bytes a sample: of the sky's irradiance, and of what the lobe reflects of it */
+    uint64_t zones, baked,
+        cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
 
-/* What resolve reads a sample: the hit, and what the view shows; the second column with photons in the pack. */
+/* What resolve reads a sample: the hit, and what the view shows. */
 static uint64_t shown_bytes(const vit_limits *l) {
-    static const uint8_t bytes[][2] = {
-        [VIT_VIEW_final] = {16, 32},   [VIT_VIEW_direct] = {16, 16},  [VIT_VIEW_indirect] = {4, 20},
-        [VIT_VIEW_clusters] = {4, 12}, [VIT_VIEW_photons] = {16, 32}, [VIT_VIEW_heat] = {4, 20},
-        [VIT_VIEW_normals] = {8, 8},   [VIT_VIEW_depth] = {8, 8},     [VIT_VIEW_albedo] = {8, 8},
-    };
-    return bytes[l->view][(l->effects & ON(PHOTONS)) != 0];
+    const int light = vit_view_light(l->view), photons = (l->effects & ON(PHOTONS)) != 0;
+    switch (l->view) {
+    case VIT_VIEW_final:
+    case VIT_VIEW_direct:
+    case VIT_VIEW_indirect:
+    case VIT_VIEW_photons: /* with light that comes indirectly goes the albedo */
+        return 4 + (light & VIT_SHOWS_DIRECT ? 12u : 0u) + (photons && (light & VIT_SHOWS_INDIRECT) ? 4u + 12u : 0u);
+    case VIT_VIEW_clusters: /* key, normal */
+        return photons ? 4 + 4 + 4 : 4;
+    case VIT_VIEW_heat: /* key; the cluster's mask, prefix and count */
+        return photons ? 4 + 4 + 12 : 4;
+    case VIT_VIEW_normals:
+    case VIT_VIEW_depth:
+    case VIT_VIEW_albedo:
+        return 4 + 4;
+    }
+    return 0;
 }
 
 _Static_assert(VIT_WORK_COUNT <= VIT_MAX_WORKS, "vitrine.h has room for every kind of work");
@@ -120,7 +134,8 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
 /* Of a pass that runs in so many rounds, each over all samples and nodes. */
 static sizes of_rounds(const sizes *z, uint64_t rounds) {
     sizes all = *z;
-    uint64_t *each[] = {&all.samples, &all.masks, &all.photons, &all.nodes, &all.inner, &all.listed, &all.entries, &all.lights, &all.coarse};
+    uint64_t *each[] = {&all.samples, &all.masks,   &all.photons, &all.nodes, &all.inner,
+                        &all.listed,  &all.entries, &all.lights,  &all.coarse};
     for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
         *each[i] *= rounds;
     return all;

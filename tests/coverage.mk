@@ -4,10 +4,10 @@
 COVERED := $(addprefix unit/test_,pack pack_forged pack_save pack_derive byte_order faults player work_kernel) \
            $(addprefix golden/test_,host effects tools no_allocation budget work_counts soak) fuzz/test_fuzz_corpus \
            $(addprefix numeric/test_,framebuffers camera photons light_power clusters attributes)
-# Names of a list in vitrine.h, as the player's options have them.
+# Names of a list in vitrine_frame.h, as the player's options have them.
 COVERED_VIEWS = $(call NAMES_OF,VIT_VIEWS)
 COVERAGE_LEAST := 90 # percent
-NAMES_OF = $(shell sed -n '/define $(1)/,/[^\\]$$/s/ *X.\([A-Za-z0-9]*\),.*/\1/p' include/vitrine.h | tr A-Z a-z)
+NAMES_OF = $(shell sed -n '/define $(1)/,/[^\\]$$/s/ *X.\([A-Za-z0-9]*\),.*/\1/p' include/vitrine_frame.h | tr A-Z a-z)
 # A kernel stands in the sources twice, for packets and for bundles of them, at two lines: gcovr 6 and later is told to keep the two apart, for
 # earlier ones gcov tells nothing of functions (gcov_lines.sh).
 GCOVR = $(if $(shell gcovr --help 2>/dev/null | grep merge-mode-functions),--merge-mode-functions=separate,--gcov-executable '$(CURDIR)/tests/gcov_lines.sh')

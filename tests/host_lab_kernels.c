@@ -10,7 +10,8 @@ VIT_EFFECTS(X)
 #define X(macro) static const uint VIT_EFFECT_##macro = 0;
 VIT_MODES(X)
 #undef X
-static const uint VIT_VIEW = 0, VIT_FORMAT = 0;
+static const vit_view VIT_VIEW = VIT_VIEW_final;
+static const vit_format VIT_FORMAT = VIT_FORMAT_XRGB8888;
 #define VIT_WITH(effect) 1
 #define VIT_WITH_DENSE 1
 #define VIT_COUNT_WORK 0

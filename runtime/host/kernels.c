@@ -11,7 +11,9 @@ VIT_EFFECTS(X)
 #define X(macro) static _Thread_local uint VIT_EFFECT_##macro;
 VIT_MODES(X)
 #undef X
-static _Thread_local uint VIT_VIEW, VIT_FORMAT, host_counts;
+static _Thread_local vit_view VIT_VIEW;
+static _Thread_local vit_format VIT_FORMAT;
+static _Thread_local uint host_counts;
 #define VIT_WITH(effect) 1
 #define VIT_WITH_DENSE 1
 #define VIT_COUNT_WORK 1
@@ -26,15 +28,15 @@ static void set_variables(const host_call *call) {
 #define X(macro) VIT_EFFECT_##macro = (call->effects & ON_##macro) != 0;
     VIT_MODES(X)
 #undef X
-    VIT_VIEW = (uint)call->view;
-    VIT_FORMAT = (uint)call->format;
+    VIT_VIEW = call->view;
+    VIT_FORMAT = call->format;
     host_counts = (call->effects & ON_WORK) != 0;
 }
 
 /* A row of the table as a call of its kernel. */
 #define B(name) (call->buffers[B_##name])
 #define V(name) (call->name)
-#define X(name, when, rounds, extent, repeat, writes, ...)                                                                             \
+#define X(name, when, rounds, extent, repeat, writes, ...)                                                                     \
     static void run_##name(const host_call *call) {                                                                            \
         name(__VA_ARGS__);                                                                                                     \
     }

@@ -4,26 +4,48 @@
 #include <strings.h>
 
 const char *const option_format_names[] = {
-    [VIT_FORMAT_XRGB8888] = "xrgb8888",
-    [VIT_FORMAT_RGB565] = "rgb565",
-    [VIT_FORMAT_RGBA32F] = "rgba32f",
+#define X(name, word, bytes, word_bytes, meaning) #word,
+    VIT_FORMATS(X)
+#undef X
 };
 const char *const option_format_meanings[] = {
-#define X(name, bytes, meaning) [VIT_FORMAT_##name] = meaning,
+#define X(name, word, bytes, word_bytes, meaning) meaning,
     VIT_FORMATS(X)
 #undef X
 };
 
 const char *const option_view_names[] = {
-#define X(name, meaning) #name,
+#define X(name, light, meaning) #name,
     VIT_VIEWS(X)
 #undef X
 };
 const char *const option_view_meanings[] = {
-#define X(name, meaning) meaning,
+#define X(name, light, meaning) meaning,
     VIT_VIEWS(X)
 #undef X
 };
+
+/* "a, b or c". */
+typedef struct choice {
+    char text[256];
+} choice;
+
+static choice choose(const char *const *names, size_t count) {
+    choice c = {""};
+    for (size_t i = 0, n = 0; i < count && n < sizeof c.text; i++)
+        n += (size_t)snprintf(c.text + n, sizeof c.text - n, "%s%s", i == 0 ? "" : i + 1 < count ? ", " : " or ", names[i]);
+    return c;
+}
+
+/* All sinks, or those that can write to stdout. */
+static choice choose_sinks(bool streams) {
+    const char *names[SINK_COUNT];
+    size_t count = 0;
+    for (uint32_t i = 0; sink_at(i) != NULL; i++)
+        if (sink_at(i)->stream || !streams)
+            names[count++] = sink_at(i)->name;
+    return choose(names, count);
+}
 
 bool option_number(const char *text, const char *end, uint32_t *out) {
     uint64_t value = 0;
@@ -62,14 +84,14 @@ vit_status option_set_out(play_options *o, const char *value, vit_text *why) {
         if (strlen(sink_at(i)->name) == length && strncmp(sink_at(i)->name, value, length) == 0)
             kind = sink_at(i);
     if (kind == NULL)
-        return play_fail(why, VIT_USAGE, "--out: unknown kind '%.*s' (null, raw, y4m, ppm or png)", (int)length, value);
+        return play_fail(why, VIT_USAGE, "--out: unknown kind '%.*s' (%s)", (int)length, value, choose_sinks(false).text);
     if (kind->target == NULL && colon != NULL)
         return play_fail(why, VIT_USAGE, "--out %s takes no target, got '%s'", kind->name, value);
     if (kind->target != NULL && (colon == NULL || colon[1] == '\0'))
         return play_fail(why, VIT_USAGE, "--out %s needs a target: %s:%s", kind->name, kind->name, kind->target);
     if (kind->target != NULL && !kind->stream && strcmp(colon + 1, "-") == 0)
-        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; raw and y4m write to stdout",
-                         kind->name);
+        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; to stdout: %s", kind->name,
+                         choose_sinks(true).text);
     o->sink = kind;
     o->target = colon != NULL ? colon + 1 : "";
     o->out_given = true;
@@ -107,7 +129,7 @@ vit_status option_set_loop(play_options *o, const char *value, vit_text *why) {
 }
 
 vit_status option_set_view(play_options *o, const char *value, vit_text *why) {
-    for (size_t i = 0; i < VIEW_COUNT; i++)
+    for (size_t i = 0; i < VIT_VIEW_COUNT; i++)
         if (strcmp(option_view_names[i], value) == 0) {
             o->view = (vit_view)i;
             return VIT_OK;
@@ -116,12 +138,13 @@ vit_status option_set_view(play_options *o, const char *value, vit_text *why) {
 }
 
 vit_status option_set_format(play_options *o, const char *value, vit_text *why) {
-    for (size_t i = 0; i < FORMAT_COUNT; i++)
+    for (size_t i = 0; i < VIT_FORMAT_COUNT; i++)
         if (strcasecmp(option_format_names[i], value) == 0) {
             o->format = (vit_format)i;
             return VIT_OK;
         }
-    return play_fail(why, VIT_USAGE, "--format: unknown format '%s' (xrgb8888, rgb565 or rgba32f)", value);
+    return play_fail(why, VIT_USAGE, "--format: unknown format '%s' (%s)", value,
+                     choose(option_format_names, VIT_FORMAT_COUNT).text);
 }
 
 vit_status option_set_lanes(play_options *o, const char *value, vit_text *why) {

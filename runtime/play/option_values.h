@@ -5,9 +5,8 @@
 #include "options.h"
 
 /* Names and what they mean, in the order of vit_format and vit_view. */
-enum { FORMAT_COUNT = VIT_FORMAT_RGBA32F + 1, VIEW_COUNT = VIT_VIEW_albedo + 1 };
-extern const char *const option_format_names[FORMAT_COUNT], *const option_format_meanings[FORMAT_COUNT];
-extern const char *const option_view_names[VIEW_COUNT], *const option_view_meanings[VIEW_COUNT];
+extern const char *const option_format_names[VIT_FORMAT_COUNT], *const option_format_meanings[VIT_FORMAT_COUNT];
+extern const char *const option_view_names[VIT_VIEW_COUNT], *const option_view_meanings[VIT_VIEW_COUNT];
 
 /* Decimal digits only, up to *end; false on overflow, sign, space or nothing at all. */
 bool option_number(const char *text, const char *end, uint32_t *out);

@@ -47,7 +47,7 @@ static const option table[] = {
     WORD("write-work-budget", "FILE", option_set_write_work_budget, "write such a file: the exact work of the frames played"),
     FLAG("explain", explain, "what the pack asks for: effects, passes, buffers, bytes; needs no device"),
     WORD("view", "NAME", option_set_view, "what the frames show; see Views (default: final)"),
-    WORD("format", "NAME", option_set_format, "pixels of null and raw; see Formats (default: xrgb8888)"),
+    WORD("format", "NAME", option_set_format, "pixels, of sinks that take any; see Sinks, Formats (default: xrgb8888)"),
     FLAG("list-devices", list_devices, "index and name of each device; host is built in and needs no OpenCL"),
     WORD("device", "NAME|N", option_set_device,
          "play on this device: a part of its name (pocl, nvidia), gpu, cpu, host, or its number in --list-devices, which may "
@@ -147,8 +147,8 @@ static vit_status check(const play_options *o, vit_text *why) {
     if (o->verify && o->view != VIT_VIEW_final)
         return play_fail(why, VIT_USAGE, "--verify goes with no --view but final: golden hashes are of the picture");
     if (!o->sink->any_format && o->format != VIT_FORMAT_XRGB8888)
-        return play_fail(why, VIT_USAGE, "--out %s takes --format xrgb8888 only, got %s", o->sink->name,
-                         options_format_name(o->format));
+        return play_fail(why, VIT_USAGE, "--out %s takes --format %s only, got %s", o->sink->name,
+                         options_format_name(VIT_FORMAT_XRGB8888), options_format_name(o->format));
     if (o->device != NULL && strcmp(o->device, "host") != 0 && options_of_host(o) != NULL)
         return play_fail(why, VIT_USAGE, "%s is for --device host, not for '%s'", options_of_host(o), o->device);
     if (o->trace && (o->verify || o->hash || o->report || o->pace || o->sink != sink_at(0)))
@@ -226,10 +226,10 @@ void options_help(FILE *to) {
         const sink_kind *kind = sink_at(i);
         (void)snprintf(left, sizeof left, "%s%s%s", kind->name, kind->target != NULL ? ":" : "",
                        kind->target != NULL ? kind->target : "");
-        (void)fprintf(to, "  %-22s %s\n", left, kind->meaning);
+        (void)fprintf(to, "  %-22s %s%s\n", left, kind->meaning, kind->any_format ? "; takes any --format" : "");
     }
-    help_names(to, "Views (--view)", option_view_names, option_view_meanings, VIEW_COUNT);
-    help_names(to, "Formats (--format)", option_format_names, option_format_meanings, FORMAT_COUNT);
+    help_names(to, "Views (--view)", option_view_names, option_view_meanings, VIT_VIEW_COUNT);
+    help_names(to, "Formats (--format)", option_format_names, option_format_meanings, VIT_FORMAT_COUNT);
     (void)fputs("\nWork\n"
                 "  Rays, tests, photon-cluster pairs, evaluations, texture lookups and bytes a pass, as exact numbers that are "
                 "equal on\n"

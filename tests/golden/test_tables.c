@@ -13,7 +13,7 @@ static tool_run r;
 
 /* FOLDER/include with every header of include/; in `header`, `more` stands behind `after`. */
 static void copy_headers(const char *header, const char *after, const char *more) {
-    static const char *const headers[] = {"vitrine.h", "vitrine_pack.h"};
+    static const char *const headers[] = {"vitrine.h", "vitrine_frame.h", "vitrine_pack.h"};
     test_packs_begin();
     (void)mkdir(FOLDER, 0777);
     (void)mkdir(FOLDER "/include", 0777);
@@ -52,9 +52,43 @@ static void a_section_without_its_check_does_not_compile(void **state) {
                 "vit_pack_check_NEWS");
 }
 
+/* As the Makefile compiles it; the width is the cheapest. */
+#define KERNELS                                                                                                                \
+    "-Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -DVIT_LANES=1 -DHOST_ISA=\"baseline\" "           \
+    "-DHOST_PROGRAM=host "                                                                                                     \
+    "runtime/host/kernels.c"
+
+static void a_view_that_no_kernel_draws_does_not_compile(void **state) {
+    (void)state;
+    a_row_needs(KERNELS, "vitrine_frame.h", "X(albedo, 0, \"diffuse reflectance\")", " X(dreams, 0, \"what is not there\")",
+                "VIT_VIEW_dreams");
+}
+
+static void a_view_without_its_bytes_does_not_compile(void **state) {
+    (void)state;
+    a_row_needs("runtime/work.c", "vitrine_frame.h", "X(albedo, 0, \"diffuse reflectance\")",
+                " X(dreams, 0, \"what is not there\")", "VIT_VIEW_dreams");
+}
+
+#define LAST_FORMAT "X(RGBA32F, rgba32f, 16, 4, \"four floats, linear radiance times exposure, alpha 1\")"
+#define A_FORMAT " X(BGR888, bgr888, 3, 1, \"bytes\")"
+static void a_format_that_no_kernel_writes_does_not_compile(void **state) {
+    (void)state;
+    a_row_needs(KERNELS, "vitrine_frame.h", LAST_FORMAT, A_FORMAT, "VIT_FORMAT_BGR888");
+}
+
+static void a_format_without_golden_hashes_does_not_compile(void **state) {
+    (void)state;
+    a_row_needs("runtime/open.c", "vitrine_frame.h", LAST_FORMAT, A_FORMAT, "bgr888");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_section_without_its_check_does_not_compile),
+        cmocka_unit_test(a_view_that_no_kernel_draws_does_not_compile),
+        cmocka_unit_test(a_view_without_its_bytes_does_not_compile),
+        cmocka_unit_test(a_format_that_no_kernel_writes_does_not_compile),
+        cmocka_unit_test(a_format_without_golden_hashes_does_not_compile),
     };
     return cmocka_run_group_tests_name("tables", tests, NULL, NULL);
 }

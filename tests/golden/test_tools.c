@@ -325,7 +325,7 @@ static void a_pack_cut_short_or_flipped_is_bad_input(void **state) {
 static void each_view_shows_something_else(void **state) {
     (void)state;
     static const char *const views[] = {
-#define X(name, meaning) #name,
+#define X(name, light, meaning) #name,
         VIT_VIEWS(X)
 #undef X
     };

@@ -4,7 +4,7 @@
  * real program, as a shell would, on everything that must be decided before a pack is read, and on files that are no pack.
  * Nothing here opens a device. What the frames are is the golden tests' subject. Each error is held to the same three
  * promises: the exit code says the cause, stderr is one line that begins with the program's name, stdout is empty. */
-#include "vitrine.h"
+#include "play/sinks/sink.h"
 #include <fcntl.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -138,15 +138,15 @@ static void help_names_every_exit_code_sink_view_and_format(void **state) {
 #define X(name, value, meaning) assert_non_null(strstr(o.out, "\n  " #value "  " meaning "\n"));
     VIT_STATUSES(X)
 #undef X
-#define X(name, meaning) assert_non_null(strstr(o.out, "\n  " #name " "));
+#define X(name, light, meaning) assert_non_null(strstr(o.out, "\n  " #name " "));
     VIT_VIEWS(X)
 #undef X
-#define X(name, bytes, meaning) assert_non_null(strstr(o.out, meaning));
+#define X(name, word, bytes, word_bytes, meaning) assert_non_null(strstr(o.out, meaning));
     VIT_FORMATS(X)
 #undef X
-    static const char *const sinks[] = {"null", "raw:FILE|-", "y4m:FILE|-", "ppm:DIR", "png:DIR"};
-    for (size_t i = 0; i < sizeof sinks / sizeof sinks[0]; i++)
-        assert_non_null(strstr(o.out, sinks[i]));
+#define X(name) assert_non_null(strstr(o.out, "\n  " #name));
+    SINKS(X)
+#undef X
 }
 
 static void version_is_the_librarys(void **state) {
@@ -247,7 +247,9 @@ static void values_out_of_range_are_refused_with_what_is_taken(void **state) {
     refuses(*state, "nowhere.vit --max-nodes 0", VIT_USAGE, "--max-nodes");
     refuses(*state, "nowhere.vit --max-list ten", VIT_USAGE, "--max-list");
     refuses(*state, "nowhere.vit --view inside", VIT_USAGE, "'inside'");
-    refuses(*state, "nowhere.vit --format jpeg", VIT_USAGE, "xrgb8888, rgb565 or rgba32f");
+    refuses(*state, "nowhere.vit --format jpeg", VIT_USAGE, "(xrgb8888, rgb565 or rgba32f)");
+    refuses(*state, "nowhere.vit --out jpeg", VIT_USAGE, "(null, raw, y4m, ppm or png)");
+    refuses(*state, "nowhere.vit --out png:-", VIT_USAGE, "to stdout: raw or y4m");
     refuses(*state, "nowhere.vit --quiet=1", VIT_USAGE, "--quiet takes no value");
     refuses(*state, "nowhere.vit --device", VIT_USAGE, "--device needs a value");
 }

@@ -33,6 +33,11 @@ typedef struct sink_kind {
 #define X(name) extern const sink_kind sink_##name;
 SINKS(X)
 #undef X
+enum {
+#define X(name) +1
+    SINK_COUNT = 0 SINKS(X)
+#undef X
+};
 
 /* The kind of row `index`; NULL beyond the last. */
 const sink_kind *sink_at(uint32_t index);
