@@ -10,7 +10,8 @@
 #define AUTO_DIRECT 0.015   /* direct light may be off by so much before more points are looked at */
 #define MOST_SAMPLES 256
 #define MOST_PHOTONS 960000.0
-#define FAR_OFF 0.2 /* so far from right, a step of one rung is not worth its time */
+#define AUTO_GAIN 4.0 /* so many times as many paths where they are worth something are worth guiding */
+#define FAR_OFF 0.2   /* so far from right, a step of one rung is not worth its time */
 
 /* A rung: factors on the automatic radius and on the default number of paths. */
 typedef struct rung {
@@ -92,11 +93,23 @@ static vit_status choose_samples(search *s, const pipeline_packed *packed, doubl
     return VIT_OK;
 }
 
+/* The plainest pack, guided where that is worth it. */
+static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
+    const bool may = !kept(s, QUALITY_KEPT_GUIDING);
+    s->base.guiding = may || s->base.guiding;
+    vit_status status = pack(s, &s->base, out, why);
+    if (status != VIT_OK || !may || out->guided_gain >= AUTO_GAIN)
+        return status;
+    s->base.guiding = false;
+    pipeline_packed_free(out);
+    return pack(s, &s->base, out, why);
+}
+
 /* The reference, and what follows from it and from the plainest pack. */
 static vit_status begin(search *s, vit_text *why) {
     pipeline_packed packed;
     check_found found;
-    vit_status status = pack(s, &s->base, &packed, why);
+    vit_status status = pack_guided(s, &packed, why);
     if (status != VIT_OK)
         return status;
     status = check_trace(s->p, &packed, &s->out->check, why);

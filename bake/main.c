@@ -150,6 +150,8 @@ static vit_status explain(bake *b, vit_text *why) {
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
                (double)s->radius);
+    if (b->packed.guides)
+        printf("  guided photons: where paths light what is seen, one stands for %.3g even ones\n", b->packed.guided_gain);
     if (s->cells > 0)
         printf("  zones and areas: %u cells, %u groups of them seen from the path, %u patches, %.4g m2 open to light; 32 zones miss %.2g %% of the weight\n",
                s->cells, b->packed.zones.receivers, b->packed.zones.patches, b->packed.zones.open_area, 100 * b->packed.zones.wrong);

@@ -118,6 +118,7 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
                    {"--normal-keys", &o->normal_keys, 0, 1, "0 or 1"},
                    {"--zones", &o->zones, 0, 2, "0, 1, or 2 to part unlike lit surfaces too"},
                    {"--effective-area", &o->effective_area, 0, 1, "0 or 1"},
+                   {"--guiding", &o->guiding, 0, 1, "0 or 1"},
                    {"--bounce-sequence", &o->bounce_sequence, 0, 1, "0 or 1"},
                    {"--light-samples", &o->light_samples, 1, 1024, "1 to 1024"},
                    {"--sky-samples", &o->sky_samples, 1, 1024, "1 to 1024"},
@@ -173,7 +174,7 @@ static bool valued(const char *name, const char *value, options *o, bool *known,
 }
 
 vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
-    *out = (options){.photons = -1, .normal_keys = -1, .zones = -1, .effective_area = -1, .bounce_sequence = -1,
+    *out = (options){.photons = -1, .normal_keys = -1, .zones = -1, .effective_area = -1, .guiding = -1, .bounce_sequence = -1,
                      .caustics = -1, .antialias_contrast = -1};
     for (int i = 1; i < argc; i++) {
         const char *wants = "";
@@ -224,7 +225,7 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     s->quality_auto = o->quality ? strcmp(o->quality, "auto") == 0 : s->quality_auto;
     s->quality_kept |= (o->photons >= 0 ? QUALITY_KEPT_PHOTONS : 0u) | (o->bounces ? QUALITY_KEPT_BOUNCES : 0u) |
                        (o->radius_given ? QUALITY_KEPT_RADIUS : 0u) | (o->zones >= 0 ? QUALITY_KEPT_ZONES | QUALITY_KEPT_LIGHT_ZONES : 0u) |
-                       (o->effective_area >= 0 ? QUALITY_KEPT_AREA : 0u) | (o->light_samples ? QUALITY_KEPT_LIGHT_SAMPLES : 0u) |
+                       (o->effective_area >= 0 ? QUALITY_KEPT_AREA : 0u) | (o->guiding >= 0 ? QUALITY_KEPT_GUIDING : 0u) | (o->light_samples ? QUALITY_KEPT_LIGHT_SAMPLES : 0u) |
                        (o->sky_samples ? QUALITY_KEPT_SKY_SAMPLES : 0u);
     q->photons = o->photons >= 0 ? o->photons : q->photons;
     q->bounces = o->bounces ? o->bounces : q->bounces;
@@ -240,6 +241,7 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
         q->light_zones = o->zones > 1;
     }
     q->effective_area = o->effective_area >= 0 ? o->effective_area != 0 : q->effective_area;
+    q->guiding = o->guiding >= 0 ? o->guiding != 0 : q->guiding;
     q->bounce_sequence = o->bounce_sequence >= 0 ? o->bounce_sequence != 0 : q->bounce_sequence;
     q->indirect_samples = o->indirect_samples ? o->indirect_samples : q->indirect_samples;
     q->vertex_bits = o->vertex_bits ? o->vertex_bits : q->vertex_bits;
@@ -291,7 +293,7 @@ void options_help(void) {
          "Instead of what the scene file says:\n"
          "  --size WxH  --frames N  --photons N  --bounces N  --radius M|auto  --tile N  --estimate list|buckets\n"
          "  --smoothing interpolated|raw  --kernel sphere|flattened  --normal-keys 0|1  --indirect-samples 1|4|16\n"
-         "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --bounce-sequence 0|1\n"
+         "  --texture-filter nearest|bilinear|trilinear  --zones 0|1|2  --effective-area 0|1  --guiding 0|1  --bounce-sequence 0|1\n"
          "  --vertex-bits 32|16  --normal-bits 16|8  --sample-bits 32|16  --light-samples N  --sky-samples N\n"
          "  --antialias 1|2|4|8|16  --antialias-contrast 0..1  --antialias-filter box|tent  --specular-depth N  --caustics 0|1  --exposure N|auto\n"
          "  --effects auto|all|none|NAME,NAME...   of mirror, glass, antialias and so on; the rest is left out\n"

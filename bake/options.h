@@ -19,7 +19,7 @@ typedef struct options {
     double exposure;           /* of all frames; 0 with exposure_given: auto */
     bool exposure_given;
     const char *quality, *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
-    int normal_keys, zones, effective_area, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
+    int normal_keys, zones, effective_area, guiding, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
     double antialias_contrast; /* -1: as the scene says */
     bool effects_given;
     int effects_choice;        /* as in `scene` */

@@ -1,7 +1,7 @@
 /* The method of kernels/photons.cl, step for step and operation for operation; only the hits come from Embree, which finds the
  * same triangle but for rounding at edges. Power: see vit_photon. */
 #include "photons.h"
-#include "photon_rays.h"
+#include "photon_emission.h"
 #include "photon_shine.h"
 #include <pthread.h>
 #include <stdatomic.h>
@@ -19,116 +19,6 @@ typedef struct baking {
     uint64_t paths;            /* of all lights */
     atomic_uint_fast64_t next; /* chunk */
 } baking;
-
-/* Fraction of a light's intensity that goes into `direction`; light_cone() of kernels/direct.cl. */
-static float cone(const vit_light *light, vec3 direction) {
-    if (light->kind != VIT_LIGHT_SPOT)
-        return 1.0f;
-    const float cosine = vec3_dot(direction, vec3_load(light->direction));
-    const float a = float_min(float_max(fmaf(cosine, light->spot_scale, light->spot_offset), 0.0f), 1.0f);
-    return a * a;
-}
-
-/* What a range changes about the light's irradiance at squared distance d2; light_left() of kernels/direct.cl. */
-static float range_factor(const vit_light *light, float d2) {
-    const float q = d2 * light->inv_range2;
-    if (light->falloff == VIT_FALLOFF_WINDOW)
-        return float_max(1.0f - q, 0.0f) * d2;
-    return float_max(1.0f - q * q, 0.0f);
-}
-
-/* Path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square. `number`: the path's number among
- * all lights'. */
-static void curve_point(uint32_t count, uint32_t i, uint32_t number, float *u, float *v) {
-    const uint32_t high = (i << 12) / count, rest = (i << 12) - high * count; /* i * 2^32 / count in two exact steps */
-    const uint32_t r = pcg(number * 2u + 0x9e3779b9u);
-    const uint32_t within = (uint32_t)(((uint64_t)r * (0xffffffffu / count)) >> 32);
-    const uint32_t curve = (high << 20) + (((rest << 10) / count) << 10) + within;
-    *u = ((float)even_bits(curve) + unit_float(pcg(r))) * (1.0f / 65536.0f);
-    *v = ((float)even_bits(curve >> 1) + unit_float(pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
-}
-
-/* sqrt(radius) and angle of a point of the disc about `center`, across the unit vector n. */
-static vec3 disc_point(vec3 center, vec3 n, float radius, float u, float v) {
-    const float r = sqrtf(u) * radius;
-    float s, c;
-    vec3 ax, ay;
-    sincos_turn(v, &s, &c);
-    vec3_across(n, &ax, &ay);
-    return vec3_along(vec3_along(center, ax, r * c), ay, r * s);
-}
-
-/* Cosine-distributed direction about n from two random numbers. */
-static vec3 cosine_lobe(vec3 n, float a, float b) {
-    const float s = sqrtf(a), c = sqrtf(float_max(1.0f - a, 0.0f));
-    float sp, cp;
-    sincos_turn(b, &sp, &cp);
-    vec3 ax, ay;
-    vec3_across(n, &ax, &ay);
-    return vec3_unit(vec3_along(vec3_along(vec3_scale(n, c), ax, s * cp), ay, s * sp));
-}
-
-/* A photon as it leaves a light. */
-typedef struct emission {
-    vec3 origin, direction, power; /* W */
-} emission;
-
-/* Of a point, spot or directional light; photon_emission() of kernels/photons.cl. */
-static emission leave_light(const vit_light *light, uint32_t count, float u, float v) {
-    emission e = {.origin = vec3_load(light->position), .direction = vec3_load(light->direction)};
-    float weight = 1.0f, whole = 2.0f * PHOTON_PI * (1.0f - light->cos_outer); /* sr; directional: m2 of the disc */
-    if (light->kind == VIT_LIGHT_DIRECTIONAL) {
-        e.origin = disc_point(e.origin, e.direction, light->spot_scale, u, v);
-        whole = PHOTON_PI * light->spot_scale * light->spot_scale;
-    } else {
-        const float c = fmaf(u, light->cos_outer - 1.0f, 1.0f), s = sqrtf(float_max(1.0f - c * c, 0.0f));
-        const vec3 axis = light->kind == VIT_LIGHT_SPOT ? e.direction : (vec3){0.0f, 1.0f, 0.0f};
-        float sp, cp;
-        vec3 ax, ay;
-        sincos_turn(v, &sp, &cp);
-        vec3_across(axis, &ax, &ay);
-        e.direction = vec3_unit(vec3_along(vec3_along(vec3_scale(axis, c), ax, s * cp), ay, s * sp));
-        weight = cone(light, e.direction);
-    }
-    e.power = vec3_scale(vec3_load(light->intensity), weight * (whole / (float)count));
-    return e;
-}
-
-/* A plane sequence for the dimensions that the curve leaves (Roberts 2018), so that any stretch of paths, which start alike in
- * the curve's two, is spread in these. */
-static void plane_point(uint32_t i, double *x, double *y) {
-    *x = ((double)(i * 0xc13fa9a9u) + 0.5) * 0x1p-32;
-    *y = ((double)(i * 0x91e10da5u) + 0.5) * 0x1p-32;
-}
-
-/* From a point of a shining side, by the cosine: flux pi L dA. */
-static emission leave_surface(const photon_rays *rays, const emitters *area, uint32_t count, uint32_t i, float u, float v) {
-    double x, y;
-    plane_point(i, &x, &y);
-    const emitter_place at = emitters_place(area, x, y);
-    if (photon_rays_covered(rays, at.triangle, at.position, at.normal))
-        return (emission){at.position, at.normal, {0.0f, 0.0f, 0.0f}};
-    return (emission){at.position, cosine_lobe(at.normal, u, v), vec3_scale(at.power, PHOTON_PI / (float)count)};
-}
-
-/* From the disc that the scene's sphere shows to a direction of the sky: flux L dw dA. */
-static emission leave_sky(const photons_light *l, uint32_t i, float u, float v) {
-    double x, y;
-    plane_point(i, &x, &y);
-    const sky_ray from = sky_choose(l->sky, x, y);
-    const float radius = l->light.spot_scale;
-    const vec3 center = vec3_along(vec3_load(l->light.position), from.direction, radius);
-    return (emission){disc_point(center, from.direction, radius, u, v), vec3_scale(from.direction, -1.0f),
-                      vec3_scale(from.power, PHOTON_PI * radius * radius / (float)l->paths)};
-}
-
-static emission leave(const photon_rays *rays, const photons_light *l, uint32_t i, uint32_t number) {
-    float u, v;
-    curve_point(l->paths, i, number, &u, &v);
-    if (l->area)
-        return leave_surface(rays, l->area, l->paths, i, u, v);
-    return l->sky ? leave_sky(l, i, u, v) : leave_light(&l->light, l->paths, u, v);
-}
 
 /* The bounce's two random numbers; photon_numbers() of kernels/photons.cl. */
 static void bounce_numbers(uint32_t number, uint32_t hit, bool sequence, float *u, float *v) {
@@ -166,8 +56,7 @@ static bool has_power(vec3 p) {
     return p.x + p.y + p.z > 0.0f;
 }
 
-/* Where a path goes at a mirror or glass, u a random number: Fresnel's part of the paths is mirrored. *power follows. */
-static vec3 shine_on(float ray_offset, const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
+vec3 photons_shine_on(float ray_offset, const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
     const vit_material *m = s->material;
     vec3 tint = vec3_load(m->specular);
     vec3 on = shine_mirrored(d, s->normal, s->face);
@@ -194,7 +83,7 @@ static vec3 shine_on(float ray_offset, const photon_surface *s, vec3 d, float t,
 static void trace_path(const baking *b, const photons_light *l, vit_photon *slots, uint32_t i, uint32_t number) {
     const uint32_t bounces = b->in->bounces;
     const uint64_t effects = b->in->effects;
-    const emission start = leave(&b->rays, l, i, number);
+    const emission start = photon_leave(&b->rays, l, i, number);
     vec3 o = start.origin, d = start.direction, power = start.power;
     vec3 from = {0.0f, 0.0f, 0.0f}; /* normal of the matt surface that the photon comes from; 0: of none */
     if (!has_power(power))
@@ -215,18 +104,22 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power,
                   photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), b->in->radius, cell_of(b, d, triangle, weight_of));
         if (hit == 0 && !l->area && !l->sky)
-            power = vec3_scale(power, range_factor(&l->light, t * t));
+            power = vec3_scale(power, photon_range_factor(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
+        if (hit == 0 && l->guide) {
+            u = start.bounce[0];
+            v = start.bounce[1];
+        }
         if (matt) {
             const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
                                                                                          : (vec3){0.0f, 0.0f, 0.0f};
             power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
-            d = cosine_lobe(s.face, u, v);
+            d = photon_cosine_lobe(s.face, u, v);
             o = s.position;
             from = s.face;
         } else {
             from = (vec3){0.0f, 0.0f, 0.0f};
-            d = shine_on(b->in->ray_offset, &s, d, t, u, &o, &power);
+            d = photons_shine_on(b->in->ray_offset, &s, d, t, u, &o, &power);
         }
         if (!has_power(power))
             return;

@@ -6,6 +6,7 @@
 #include "atlas.h"
 #include "cells.h"
 #include "emitters.h"
+#include "photon_surface.h"
 #include "sky.h"
 
 #define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
@@ -17,6 +18,9 @@ typedef struct photons_light {
     const emitters *area; /* not NULL: the area lights, and `light` does not count */
     const sky *sky; /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere round the
                        scene */
+    const struct guide *guide; /* where its paths start and how they first reflect (guide.h); NULL: evenly */
+    vec3 around; /* of the sky, guided: the place that positions across its directions are counted from, so that a window is in
+                    one place from all of them */
 } photons_light;
 
 /* `done` runs from 0 to 1. Called by the thread that called photons_bake(). */
@@ -46,5 +50,9 @@ typedef struct photons_input {
  * so that no two lights share random numbers. The bytes do not depend on `threads` (0: all cores). *out is the caller's to
  * free, NULL if *count is 0. VIT_FAILED: out of memory, or Embree fails. VIT_BAD_INPUT: too many paths. */
 vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **out, uint32_t *count, vit_text *why);
+
+/* Where a path goes at a mirror or glass, u a random number: Fresnel's part of the paths is mirrored. *power and *o follow; t:
+ * its way so far, m. */
+vec3 photons_shine_on(float ray_offset, const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
 
 #endif

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define GUIDED_BY (VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(GLOSS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
 #define COARSE 0x1p-16 /* of the scene's size: coarser floats in its files are worth a warning */
 
 static vit_status out_of_memory(vit_text *why) {
@@ -121,6 +122,7 @@ void pipeline_free(pipeline *p) {
     if (p->kept)
         zones_kept_free(p->kept);
     free(p->kept);
+    guides_free(&p->guided.guides);
     sky_free(&p->sky);
     atlas_free(&p->atlas);
     geometry_free(&p->geometry);
@@ -161,7 +163,70 @@ static photons_light sky_source(const pipeline *p, const pipeline_packed *out) {
     return (photons_light){
         .light = {.position = {l->sky_center[0], l->sky_center[1], l->sky_center[2]}, .spot_scale = l->sky_radius},
         .paths = l->sky_paths,
-        .sky = &p->sky};
+        .sky = &p->sky,
+        .guide = guides_of(out->guides, out->tracks.light_count + 1),
+        .around = out->guides ? out->guides->around : (vec3){0.0f, 0.0f, 0.0f}};
+}
+
+/* Density of guided paths over that of even ones, where they are worth something, on average: of the light's own and of its
+ * share of all paths. */
+static double guides_gain(const guides *g, const pipeline_packed *out) {
+    const uint32_t lights = out->tracks.light_count;
+    double all = 0, gain = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t i = 0; i < lights + 2; i++) {
+            const uint32_t paths = i == lights      ? out->plan.area_paths
+                                   : i == lights + 1 ? out->plan.sky_paths
+                                                     : out->plan.baked_paths[i] + out->tracks.lights[i].path_count;
+            all += pass == 0 ? (double)paths : 0;
+            if (pass == 1 && paths > 0)
+                gain += g->worth[i] * (g->worth[i] * all / (double)paths) * (g->guide[i].nodes ? g->guide[i].gain : 1);
+        }
+    return gain;
+}
+
+/* Guides of the scene's lights, and the paths shared by what they are worth. Where nothing is worth anything, photons go evenly. */
+static vit_status guide_photons(pipeline *p, const scene *s, pipeline_packed *out, vit_text *why) {
+    const vit_scene *c = &out->plan.scene;
+    pipeline_guides *kept = &p->guided;
+    if (!s->quality.guiding || !(c->effects & VIT_BIT(PHOTONS)))
+        return VIT_OK;
+    if (kept->guides.count == 0 || kept->width != c->width || kept->height != c->height || kept->bounces != c->bounces ||
+        kept->effects != (c->effects & GUIDED_BY)) {
+        bool *gives = calloc(c->lights + 1u, sizeof *gives);
+        if (!gives)
+            return out_of_memory(why);
+        for (uint32_t i = 0; i < c->lights; i++)
+            gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
+        const photons_light from_sky = sky_source(p, out);
+        const guides_input in = {.scene = {.triangles = p->geometry.triangles,
+                                           .attributes = p->geometry.attributes,
+                                           .triangle_count = p->model.triangles,
+                                           .materials = out->plan.materials,
+                                           .atlas = &p->atlas,
+                                           .ray_offset = p->geometry.ray_offset,
+                                           .box_pad = p->bvh.box_pad,
+                                           .effects = c->effects},
+                                 .tracks = &out->tracks,
+                                 .frames = c->frames,
+                                 .width = c->width,
+                                 .height = c->height,
+                                 .bounces = c->bounces,
+                                 .gives_photons = gives,
+                                 .area = out->plan.area_paths > 0 ? &out->plan.area : NULL,
+                                 .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
+                                 .threads = p->threads};
+        progress_stage(p->progress, "guides of photons");
+        guides_free(&kept->guides);
+        const vit_status status = guides_find(&in, &kept->guides, why);
+        free(gives);
+        if (status != VIT_OK)
+            return status;
+        *kept = (pipeline_guides){kept->guides, c->width, c->height, c->bounces, c->effects & GUIDED_BY};
+    }
+    out->guides = &kept->guides;
+    out->guided_gain = guides_gain(&kept->guides, out);
+    return plan_share(s, &out->tracks, out->reach, &p->sky, kept->guides.worth, &out->plan, why);
 }
 
 static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_text *why) {
@@ -176,9 +241,9 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
     }
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
-            lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i]};
+            lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = guides_of(out->guides, i)};
     if (out->plan.area_paths > 0)
-        lights[count++] = (photons_light){.paths = out->plan.area_paths, .area = &out->plan.area};
+        lights[count++] = (photons_light){.paths = out->plan.area_paths, .area = &out->plan.area, .guide = guides_of(out->guides, out->tracks.light_count)};
     if (out->plan.sky_paths > 0)
         lights[count++] = sky_source(p, out);
     if (count > 0) {
@@ -281,6 +346,7 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .gives_photons = gives,
                             .area_lights = out->plan.area_paths > 0 ? &out->plan.area : NULL,
                             .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
+                            .guides = out->guides,
                             .scene = &out->plan.scene,
                             .zones = c->quality.zones,
                             .by_light = c->quality.light_zones,
@@ -358,6 +424,8 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
     if (status == VIT_OK)
         status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &p->sky, p->threads,
                            &out->plan, why);
+    if (status == VIT_OK)
+        status = guide_photons(p, &s, out, why);
     if (status == VIT_OK)
         status = place_emitters(p, out, why);
     if (status == VIT_OK)

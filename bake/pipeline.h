@@ -5,6 +5,7 @@
 
 #include "atlas.h"
 #include "bvh.h"
+#include "guides.h"
 #include "pack_write.h"
 #include "planner.h"
 #include "progress.h"
@@ -13,6 +14,13 @@
 #include "sky.h"
 #include "tracks.h"
 #include "zones_kept.h"
+
+/* Guides, and what they depend on besides the scene. */
+typedef struct pipeline_guides {
+    guides guides;
+    uint32_t width, height, bounces;
+    uint64_t effects;
+} pipeline_guides;
 
 /* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
 typedef struct pipeline {
@@ -31,6 +39,7 @@ typedef struct pipeline {
     atlas atlas;
     sky sky;
     zones_kept *kept;
+    pipeline_guides guided; /* of the last pack that guides photons */
 } pipeline;
 
 typedef struct pipeline_choice {
@@ -59,6 +68,8 @@ typedef struct pipeline_packed {
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
+    const guides *guides; /* the pipeline's; NULL: photons are not guided */
+    double guided_gain;   /* how many even paths a guided one stands for, where paths are worth something */
     vit_emitter *emitters; /* section EMIT */
     vit_photon *photons;
     uint32_t *met; /* a word a material: 1 where baked photons met it */

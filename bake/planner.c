@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define PACKET 16u
+#define PLAN_BY_POWER 0.2 /* of the paths are shared by power where the lights' worth is known: what was not found to matter may still */
 #define TWO_PI 6.283185307179586
 
 /* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost edges
@@ -36,12 +37,14 @@ static double sum_of(const double c[3]) {
     return c[0] + c[1] + c[2];
 }
 
-static uint32_t share(const scene *s, double power, double total) {
-    return power > 0 ? (uint32_t)ceil(s->quality.photons * (power / total) / PACKET) * PACKET : 0;
+/* Paths of a light of so much power; worth: its share of what is seen, NULL: not known. */
+static uint32_t share(const scene *s, double power, double total, const double *worth) {
+    const double even = power / total, part = worth ? (1 - PLAN_BY_POWER) * *worth + PLAN_BY_POWER * even : even;
+    return power > 0 ? (uint32_t)ceil(s->quality.photons * part / PACKET) * PACKET : 0;
 }
 
 /* Nobody gets paths where no surface could store a photon. */
-static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, plan *p, vit_text *why) {
+static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, const double *worth, plan *p, vit_text *why) {
     const double area = sum_of(p->area.flux) / TWO_PI;
     const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
@@ -50,10 +53,10 @@ static vit_status share_paths(const scene *s, tracks *t, const sky *round, const
         total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
     if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0) || !(r->area > 0))
         return VIT_OK;
-    p->area_paths = share(s, area, total);
-    p->sky_paths = share(s, above, total);
+    p->area_paths = share(s, area, total, worth ? worth + t->light_count : NULL);
+    p->sky_paths = share(s, above, total, worth ? worth + t->light_count + 1 : NULL);
     for (uint32_t i = 0; i < t->light_count; i++) {
-        uint32_t paths = share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total);
+        uint32_t paths = share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total, worth ? worth + i : NULL);
         if (paths == 0)
             continue;
         if (t->still[i]) {
@@ -228,7 +231,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius);
     vit_status status = emitters_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
     if (status == VIT_OK)
-        status = share_paths(s, t, round, r, out, why);
+        status = share_paths(s, t, round, r, NULL, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;
@@ -263,6 +266,13 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         c->flatten = (float)s->quality.flatten;
     }
     return VIT_OK;
+}
+
+vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p, vit_text *why) {
+    const vit_status status = share_paths(s, t, round, r, worth, p, why);
+    p->area_paths = p->scene.effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
+    p->sky_paths = p->scene.effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
+    return status;
 }
 
 double plan_radius(const plan *p, double stored) {

@@ -27,6 +27,8 @@ typedef struct plan {
 vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, const sky *round,
                      unsigned threads, plan *out, vit_text *why);
 void plan_free(plan *p);
+/* Shares the paths anew by what each of the tracks' lights, all area lights and the sky are worth (guides.h); sum 1. */
+vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p, vit_text *why);
 
 /* What radius "auto" is, m, if a frame stores so many photons (> 0). Until that has been measured the plan assumes all slots. */
 double plan_radius(const plan *p, double stored);

@@ -57,6 +57,7 @@ static const field quality_fields[] = {
     {"zones", FIELD_SWITCH, offsetof(quality_group, q.zones), NULL},
     {"light_zones", FIELD_SWITCH, offsetof(quality_group, q.light_zones), NULL},
     {"effective_area", FIELD_SWITCH, offsetof(quality_group, q.effective_area), NULL},
+    {"guiding", FIELD_SWITCH, offsetof(quality_group, q.guiding), NULL},
     {"bounce_sequence", FIELD_SWITCH, offsetof(quality_group, q.bounce_sequence), NULL},
     {"indirect_samples", FIELD_AMONG, offsetof(quality_group, q.indirect_samples), SCENE_INDIRECT_SAMPLES},
     {"texture_filter", FIELD_WORD, offsetof(quality_group, q.texture_filter), SCENE_FILTERS},

@@ -91,6 +91,7 @@ typedef struct scene_quality {
     bool normal_keys;
     bool zones;                /* photons count only for surfaces that see where they landed, by 32 baked zones */
     bool light_zones;          /* zones also part surfaces that are lit unlike; needs zones */
+    bool guiding;              /* photon paths of still lights go where they light what is seen (guides.h) */
     bool effective_area;       /* estimates are divided by the part of the kernel that lies on surfaces */
     bool bounce_sequence;      /* reflections follow a low-discrepancy sequence */
     int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
@@ -110,7 +111,7 @@ typedef struct scene_quality {
 /* Settings that quality "auto" chooses, unless the block or an option states them: X(name, word). */
 #define SCENE_QUALITY_AUTO(X)                                                                                                  \
     X(PHOTONS, photons) X(BOUNCES, bounces) X(RADIUS, radius) X(ZONES, zones) X(LIGHT_ZONES, light_zones)                      \
-    X(AREA, effective_area) X(LIGHT_SAMPLES, light_samples) X(SKY_SAMPLES, sky_samples)
+    X(AREA, effective_area) X(GUIDING, guiding) X(LIGHT_SAMPLES, light_samples) X(SKY_SAMPLES, sky_samples)
 enum {
 #define X(name, word) QUALITY_AT_##name,
     SCENE_QUALITY_AUTO(X)

@@ -4,6 +4,7 @@
 #define VIT_BAKE_ZONES_H
 
 #include "atlas.h"
+#include "guides.h"
 #include "photons.h"
 #include "tracks.h"
 
@@ -16,6 +17,7 @@ typedef struct zones_input {
     const bool *gives_photons; /* a light */
     const emitters *area_lights; /* that give photons, or NULL */
     const photons_light *sky;  /* the same */
+    const guides *guides; /* of photons, or NULL */
     const vit_scene *scene;    /* frames, width, height, bounces, radius, flatten, box_pad, ray_offset, lights, effects */
     bool zones;                /* accept bits and zones; otherwise every cell accepts zone 0 */
     bool by_light;             /* unlike lit surfaces are kept apart too */

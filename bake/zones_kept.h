@@ -10,7 +10,7 @@
 typedef struct zones_kept_one {
     float radius, flatten;
     uint32_t width, height, bounces, lights;
-    bool zones, by_light, areas;
+    bool zones, by_light, areas, guided;
     bool *gives; /* a light */
     uint64_t asked;
     cells cells;

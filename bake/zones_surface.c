@@ -104,9 +104,9 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         uint32_t count = 0, found = 0;
         for (uint32_t i = 0; i < s->lights; i++)
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)
-                lights[count++] = (photons_light){.light = frame[i]};
+                lights[count++] = (photons_light){.light = frame[i], .guide = guides_of(z->in->guides, i)};
         if (z->in->area_lights)
-            lights[count++] = (photons_light){.area = z->in->area_lights};
+            lights[count++] = (photons_light){.area = z->in->area_lights, .guide = guides_of(z->in->guides, s->lights)};
         if (z->in->sky)
             lights[count++] = *z->in->sky;
         for (uint32_t i = 0; i < count; i++)
@@ -128,8 +128,8 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         vit_photon *photons = NULL;
         status = count ? photons_bake(&in, z->in->threads, &photons, &found, why) : VIT_OK;
         for (uint32_t i = 0; i < found; i++)
-            flux[photons[i].zone] += (photons[i].power[0] + photons[i].power[1] + photons[i].power[2]) *
-                                     photons[i].radius2 / (float)probes; /* powers are per area of each photon's own disc */
+            flux[photons[i].zone] += (photons[i].power[0] + photons[i].power[1] + photons[i].power[2]) * photons[i].radius2 /
+                                     (float)probes; /* powers are per area of each photon's own disc */
         free(photons);
     }
     free(lights);
