@@ -2,6 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+static uint64_t bytes_of(const cells *c, uint32_t sides) {
+    return (uint64_t)sides * sizeof *c->sides + (uint64_t)c->count * (sizeof *c->cells + sizeof *c->side_of);
+}
+
 static void drop(zones_kept_one *o) {
     cells_free(&o->cells);
     free(o->gives);
@@ -32,12 +36,37 @@ static bool copy_cells(const cells *from, uint32_t sides, cells *to) {
     return false;
 }
 
+/* The one that was asked for longest ago; asked 0: a free place. */
+static zones_kept_one *oldest(zones_kept *k, bool taken) {
+    zones_kept_one *o = NULL;
+    for (int i = 0; i < ZONES_KEPT; i++)
+        if ((k->one[i].asked > 0 || !taken) && (!o || k->one[i].asked < o->asked))
+            o = k->one + i;
+    return o;
+}
+
+/* A place with room for so many bytes. */
+static zones_kept_one *make_room(zones_kept *k, uint64_t bytes) {
+    uint64_t sum = 0;
+    int count = 0;
+    for (int i = 0; i < ZONES_KEPT; i++) {
+        sum += k->one[i].bytes;
+        count += k->one[i].asked > 0;
+    }
+    for (; count > 1 && sum + bytes > ZONES_BYTES; count--) {
+        zones_kept_one *o = oldest(k, true);
+        sum -= o->bytes;
+        drop(o);
+    }
+    zones_kept_one *o = oldest(k, false);
+    drop(o);
+    return o;
+}
+
 static void keep(zones_kept *k, const zones_input *in, const cells *c, const zones_found *found) {
     const vit_scene *s = in->scene;
-    zones_kept_one *o = k->one;
-    for (int i = 1; i < ZONES_KEPT; i++)
-        o = k->one[i].asked < o->asked ? k->one + i : o;
-    drop(o);
+    const uint64_t bytes = bytes_of(c, 2 * in->triangles);
+    zones_kept_one *o = make_room(k, bytes);
     o->gives = copied(in->gives_photons, s->lights * sizeof *o->gives);
     if (!o->gives || !copy_cells(c, 2 * in->triangles, &o->cells)) {
         drop(o);
@@ -54,6 +83,7 @@ static void keep(zones_kept *k, const zones_input *in, const cells *c, const zon
     o->areas = in->areas;
     o->guided = in->guides != NULL;
     o->found = *found;
+    o->bytes = bytes;
     o->asked = ++k->asked;
 }
 

@@ -5,14 +5,15 @@
 
 #include "zones.h"
 
-#define ZONES_KEPT 16 /* at most; the one asked for longest ago goes first */
+#define ZONES_KEPT 64                     /* at most, and so many bytes; the one asked for longest ago goes first */
+#define ZONES_BYTES ((uint64_t)512 << 20) /* two in any case */
 
 typedef struct zones_kept_one {
     float radius, flatten;
     uint32_t width, height, bounces, lights;
     bool zones, by_light, areas, guided;
     bool *gives; /* a light */
-    uint64_t asked;
+    uint64_t asked, bytes;
     cells cells;
     zones_found found;
 } zones_kept_one;

@@ -38,7 +38,7 @@ static const option options[] = {
     {"--every", "N", WHOLE, AT(every), 1, 4096, "compares one pixel in N x N (default: at most 60 000 pixels)"},
     {"--repeats", "N", WHOLE, AT(repeats), SWEEP_LEAST_REPEATS, 100000, "frames timed a setting, at least 7 (default 14)"},
     {"--reference-error", "E", REAL, AT(reference_error), 1e-9, 1,
-     "NMSE of the reference's own error (default: a tenth of the smallest error)"},
+     "NMSE of the reference's own error (default: a tenth of the smallest error; to choose by NMSE alone a quarter)"},
     {"--max-samples", "N", WHOLE, AT(max_samples), 16, 1 << 18, "paths a pixel of the reference, at most (default 4096)"},
     {"--cache", "FOLDER", WORD, AT(cache), 0, 0, "keeps references there (default $XDG_CACHE_HOME/vitrine, ~/.cache/vitrine)"},
     {"--no-cache", NULL, FLAG, AT(no_cache), 0, 0, "keeps none"},

@@ -79,6 +79,7 @@ vit_status fit_pack(pipeline *p, uint32_t device, const fit_budget *budget, pipe
     const sweep_input in = {.pipeline = p,
                             .device = device,
                             .fit_ms = budget->ms,
+                            .to_choose = true,
                             .relmse = budget->relmse,
                             .settings = SWEEP_SETTINGS,
                             .frame = -1,

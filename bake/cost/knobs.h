@@ -26,6 +26,7 @@ typedef struct knobs_input {
     uint64_t effects; /* that the default has: some knobs are for scenes with theirs alone */
     const char *only; /* names with commas between; NULL: all */
     uint32_t most;    /* settings, >= 1 */
+    bool in_quality;  /* only what a quality block can hold */
 } knobs_input;
 
 /* Settings, no two alike, the same for the same calls. */

@@ -91,6 +91,7 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
     const sweep_input in = {.pipeline = p,
                             .device = device,
                             .fit_ms = o->output ? 0 : o->fit, /* a report shows all times */
+                            .to_choose = !o->output,
                             .relmse = o->relmse,
                             .knobs = o->knobs,
                             .settings = o->settings,

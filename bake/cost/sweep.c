@@ -8,7 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FIRST_ERROR 1e-3 /* NMSE of a first reference, from which the smallest error of a setting is judged */
+/* NMSE of a first reference, from which the smallest error of a setting is judged, and the part of that which its own may be.
+ * To choose a setting less will do: all are compared with one picture, whose noise adds the same to each on average, and is
+ * taken off. relMSE has no such figure. */
+#define FIRST_ERROR 1e-3
+#define ERROR_PART 10
+#define FIRST_ERROR_TO_CHOOSE 4e-3
+#define ERROR_PART_TO_CHOOSE 4
 #define MOST_REFERENCES 4
 
 bool sweep_cancelled(const sweep *s, vit_text *why) {
@@ -107,6 +113,7 @@ static vit_status list_settings(sweep *s, vit_text *why) {
                             .radius = (double)s->base.plan.scene.radius,
                             .effects = s->base.plan.scene.effects,
                             .only = s->in->knobs,
+                            .in_quality = s->in->to_choose,
                             .most = s->in->settings};
     vit_status status =
         s->in->list ? s->in->list(s->in->list_user, q, in.radius, &s->knobs, why) : knobs_open(&in, &s->knobs, why);
@@ -119,23 +126,26 @@ static vit_status list_settings(sweep *s, vit_text *why) {
     return s->out->settings && s->packs && s->indirect && s->directs ? VIT_OK : fail(VIT_FAILED, why, "out of memory");
 }
 
-/* Errors mean something when the reference's own is below a tenth of the smallest: what it must fall below, 0 if it has. */
+static double error_part(const sweep *s) {
+    return sweep_own_error_off(s) ? ERROR_PART_TO_CHOOSE : ERROR_PART;
+}
+
+/* Errors mean something when the reference's own is below a part of the smallest: what it must fall below, 0 if it has. */
 static double better_target(const sweep *s) {
-    const double least = sweep_smallest_error(s), own = s->out->reference.error;
+    const double least = sweep_smallest_error(s) / error_part(s), own = s->out->reference.error;
     const bool more = s->out->reference.samples < s->in->max_samples;
-    return s->in->reference_error > 0 || !more || own <= least / 10 ? 0
-                                                                    : least / 12; /* a little less: the error falls as well */
+    return s->in->reference_error > 0 || !more || own <= least ? 0 : least / 1.2; /* a little less: the error falls as well */
 }
 
 static void say_reference(const sweep *s) {
     const double least = sweep_smallest_error(s), own = s->out->reference.error;
     const cost_results *r = s->out;
-    if (own > least / 10)
+    if (own > least / error_part(s))
         progress_line(s->progress, true,
-                      "warning: the reference's own error, NMSE %.2g, is more than a tenth of the smallest error, %.2g: more "
+                      "warning: the reference's own error, NMSE %.2g, is more than 1/%.0f of the smallest error, %.2g: more "
                       "--max-samples, or a "
                       "smaller --reference-error",
-                      own, least);
+                      own, error_part(s), least);
     progress_line(s->progress, false,
                   "direct light against the reference: NMSE %.2g, largest difference %.2g of the mean; bounce limit: NMSE %.2g",
                   r->direct.nmse, r->direct_largest, r->truncation.nmse);
@@ -144,7 +154,8 @@ static void say_reference(const sweep *s) {
 /* Rank 0 says how good the reference must be, until it is; all ranks make it. */
 static vit_status compare(sweep *s, vit_text *why) {
     const bool first_rank = spread_rank() == 0;
-    double target = s->in->reference_error > 0 ? s->in->reference_error : FIRST_ERROR;
+    const double first = sweep_own_error_off(s) ? FIRST_ERROR_TO_CHOOSE : FIRST_ERROR;
+    double target = s->in->reference_error > 0 ? s->in->reference_error : first;
     vit_status status = VIT_OK;
     for (int round = 0; round < MOST_REFERENCES && target > 0; round++) {
         status = make_reference(s, target, why);
@@ -206,7 +217,7 @@ static vit_status run(sweep *s, vit_text *why) {
 }
 
 vit_status sweep_run(const sweep_input *in, cost_results *out, vit_text *why) {
-    sweep s = {.in = in, .progress = in->pipeline->progress, .out = out};
+    sweep s = {.in = in, .progress = in->pipeline->progress, .out = out, .brief = in->to_choose};
     memset(out, 0, sizeof *out);
     vit_status status = run(&s, why);
     progress_end(s.progress);

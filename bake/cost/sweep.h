@@ -20,21 +20,22 @@ typedef vit_status sweep_list_fn(const void *user, const scene_quality *base, do
                                  vit_text *why);
 
 typedef struct sweep_input {
-    pipeline *pipeline; /* loaded; its device and threads make packs, pictures and counts */
-    uint32_t device;    /* that times are measured on */
-    const char *knobs;  /* names with commas between; NULL: all */
-    uint32_t settings;  /* at most, the default included; >= 1 */
-    int64_t frame;      /* of the scene's path, compared with the reference; < 0: the middle one */
-    uint32_t every;     /* the grid's spacing, pixels; 0: so that it has at most SWEEP_GRID points */
-    uint32_t repeats;   /* frames timed a setting, >= SWEEP_LEAST_REPEATS; 0: times are not measured */
-    double
-        reference_error;  /* NMSE that the reference's standard error must fall below; 0: a tenth of the smallest error found */
-    uint32_t max_samples; /* of the reference, paths a pixel */
-    const char *cache;    /* reference_input.cache */
-    uint32_t frames;      /* of the path that are played, 1 .. SWEEP_FRAMES; 0: SWEEP_FRAMES */
-    sweep_list_fn *list;  /* makes the settings; NULL: from the knobs, and by searching */
+    pipeline *pipeline;     /* loaded; its device and threads make packs, pictures and counts */
+    uint32_t device;        /* that times are measured on */
+    const char *knobs;      /* names with commas between; NULL: all */
+    uint32_t settings;      /* at most, the default included; >= 1 */
+    int64_t frame;          /* of the scene's path, compared with the reference; < 0: the middle one */
+    uint32_t every;         /* the grid's spacing, pixels; 0: so that it has at most SWEEP_GRID points */
+    uint32_t repeats;       /* frames timed a setting, >= SWEEP_LEAST_REPEATS; 0: times are not measured */
+    double reference_error; /* NMSE that the reference's standard error must fall below; 0: a tenth of the smallest error found;
+                               a quarter to choose by NMSE */
+    uint32_t max_samples;   /* of the reference, paths a pixel */
+    const char *cache;      /* reference_input.cache */
+    uint32_t frames;        /* of the path that are played, 1 .. SWEEP_FRAMES; 0: SWEEP_FRAMES */
+    sweep_list_fn *list;    /* makes the settings; NULL: from the knobs, and by searching */
     const void *list_user;
     double fit_ms;   /* > 0: only what could be the most accurate setting within so many ms is timed; 0: all */
+    bool to_choose;  /* for fit_choose() alone: no settings but those that a quality block can hold */
     bool relmse;     /* accurate by total.relmse */
     uint32_t timed;  /* the first so many settings are timed; 0: all */
     bool normals;    /* fills out->normals: a second reference is made */

@@ -63,7 +63,7 @@ vit_status sweep_direct(sweep *s, uint32_t i, const float **image, vit_text *why
                                 .device = s->in->pipeline->device,
                                 .threads = s->in->pipeline->threads,
                                 .view = VIT_VIEW_direct};
-    return images_render(&info, s->at, &s->grid, d->image, NULL, why);
+    return images_render(&info, sweep_place(s), &s->grid, d->image, NULL, why);
 }
 
 void sweep_compare_direct(sweep *s) {

@@ -12,12 +12,18 @@ static double *sum_of(const double *direct, const double *indirect, size_t value
     return sum;
 }
 
+bool sweep_own_error_off(const sweep *s) {
+    return s->in->to_choose && !s->in->relmse;
+}
+
 static void compare_all(sweep *s, const double *limited, const double *unlimited) {
     cost_results *r = s->out;
     const uint32_t width = r->reference.width, height = r->reference.height;
     for (uint32_t i = 0; i < r->count; i++) {
         cost_setting *c = &r->settings[i];
         c->total = metrics_compare(limited, c->image, NULL, width, height);
+        if (sweep_own_error_off(s))
+            c->total.nmse = fmax(c->total.nmse - r->reference.error, 0);
         c->unlimited = metrics_compare(unlimited, c->image, NULL, width, height);
         c->indirect = metrics_compare(r->reference.limited, s->indirect[i], limited, width, height);
     }

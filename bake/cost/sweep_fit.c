@@ -113,6 +113,7 @@ vit_status sweep_times_to_fit(sweep *s, vit_text *why) {
     bool *taken = calloc(s->out->count, sizeof *taken);
     uint32_t list[AT_ONCE + 1] = {0}, count = 1;
     vit_status status = taken ? VIT_OK : VIT_FAILED;
+    s->brief = false;
     if (!taken)
         snprintf(why->text, sizeof why->text, "out of memory");
     for (bool more = true; status == VIT_OK && more; more = count > 1) {

@@ -27,8 +27,8 @@ vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why) {
     const pipeline_choice choice = {.quality = k->quality,
                                     .width = scaled(p->scene.width, k->scale),
                                     .height = scaled(p->scene.height, k->scale),
-                                    .frames = s->frames,
-                                    .frame_count = s->frame_count};
+                                    .frames = s->brief ? &s->frames[s->at] : s->frames,
+                                    .frame_count = s->brief ? 1 : s->frame_count};
     pipeline_packed packed;
     p->progress = &quiet;
     vit_status status = pipeline_pack(p, &choice, &packed, why);
@@ -46,6 +46,10 @@ void sweep_drop_pack(sweep *s, uint32_t i) {
     s->kept -= s->packs[i].bytes ? s->packs[i].size : 0;
     free(s->packs[i].bytes);
     s->packs[i].bytes = NULL;
+}
+
+uint32_t sweep_place(const sweep *s) {
+    return s->brief ? 0 : s->at;
 }
 
 static vit_open_info how(const sweep *s, uint32_t i) {
@@ -93,7 +97,7 @@ static vit_status picture(sweep *s, uint32_t i, vit_text *why) {
         return fail(VIT_FAILED, why, c->name, "out of memory");
     info.count_work = 1;
     if (status == VIT_OK)
-        status = images_render(&info, s->at, &s->grid, c->image, &stats, why);
+        status = images_render(&info, sweep_place(s), &s->grid, c->image, &stats, why);
     if (status == VIT_OK)
         note_work(s->out, c, &stats);
     if (status == VIT_OK)
@@ -109,7 +113,7 @@ vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why) {
     vit_status status = VIT_OK;
     for (uint32_t i = first; i < s->out->count && status == VIT_OK; i++) {
         status = sweep_cancelled(s, why) ? VIT_FAILED : picture(s, i, why);
-        if (s->kept > s->in->memory)
+        if (s->brief || s->kept > s->in->memory)
             sweep_drop_pack(s, i);
         progress_step(s->progress, (i + 1.0) / s->knobs.most);
     }

@@ -24,6 +24,7 @@ typedef struct sweep {
     cost_results *out;
     uint32_t frames[SWEEP_FRAMES], frame_count;
     uint32_t at; /* the compared frame among frames[] */
+    bool brief;  /* packs of settings hold the compared frame alone: they are for pictures, not for times */
     images_grid grid;
     size_t points;         /* of the grid */
     pipeline_packed base;  /* the default's: the reference reads it */
@@ -42,6 +43,8 @@ bool sweep_cancelled(const sweep *s, vit_text *why);
 /* sweep_packs.c: the pack of setting i, made again if it was not kept. */
 vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why);
 void sweep_drop_pack(sweep *s, uint32_t i);
+/* The compared frame's place in such a pack. */
+uint32_t sweep_place(const sweep *s);
 /* Pack, bytes, images and work of the settings first .. out->count - 1. */
 vit_status sweep_pictures(sweep *s, uint32_t first, vit_text *why);
 /* sweep_direct.c: direct light of setting i, whose pack is there, on the grid. */
@@ -67,6 +70,8 @@ vit_status sweep_times_to_fit(sweep *s, vit_text *why);
 
 /* sweep_errors.c: errors of every setting against the reference as it stands. */
 vit_status sweep_errors(sweep *s, vit_text *why);
+/* Is the reference's own error taken off the settings' total NMSE? */
+bool sweep_own_error_off(const sweep *s);
 /* The smallest total NMSE of any setting. */
 double sweep_smallest_error(const sweep *s);
 

@@ -288,8 +288,9 @@ static void mistakes_are_named(void **state) {
 static void a_fit_times_only_what_could_be_the_answer(void **state) {
     (void)state;
     unsigned timed = 0, all = 0;
-    tool(&run, TOOL_COST " " TEST_PACKS "/room.cfg --size 48x32 --knobs photons,radius,estimate --settings 10 --fit 1e6 --repeats 7 "
-                         "--max-samples 16 --reference-error 1 --no-cache --device host");
+    tool(&run,
+         TOOL_COST " " TEST_PACKS "/room.cfg --size 48x32 --knobs photons,radius,estimate --settings 10 --fit 1e6 --repeats 7 "
+                   "--max-samples 16 --reference-error 1 --no-cache --device host");
     tool_succeeds(&run);
     const char *line = strstr(run.err, "times: ");
     while (line && sscanf(line, "times: %u of %u settings", &timed, &all) != 2)
@@ -297,6 +298,15 @@ static void a_fit_times_only_what_could_be_the_answer(void **state) {
     assert_true(all >= 8 && all <= 10);
     assert_true(timed >= 3 && timed <= 4);
     assert_non_null(strstr(run.out, "\n> "));
+}
+
+/* The default alone is left of these. */
+static void a_fit_makes_no_pictures_of_what_it_cannot_choose(void **state) {
+    (void)state;
+    tool(&run, TOOL_COST " " TEST_PACKS "/room.cfg --size 48x32 --knobs lanes,size --settings 10 --fit 1e6 --repeats 7 "
+                         "--max-samples 16 --reference-error 1 --no-cache --device host");
+    tool_succeeds(&run);
+    assert_non_null(strstr(run.err, "times: 1 of 1 settings"));
 }
 
 int main(void) {
@@ -309,6 +319,7 @@ int main(void) {
         cmocka_unit_test(the_choice_is_what_the_table_says),
         cmocka_unit_test(a_budget_that_nothing_fits_names_the_closest_miss),
         cmocka_unit_test(a_fit_times_only_what_could_be_the_answer),
+        cmocka_unit_test(a_fit_makes_no_pictures_of_what_it_cannot_choose),
         cmocka_unit_test(write_changes_the_quality_block_and_nothing_else),
     };
     return cmocka_run_group_tests(tests, sweep_once, NULL);
