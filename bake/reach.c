@@ -3,9 +3,11 @@
  * direct irradiance;
  *   2. every side shoots rays about its normal and notes which sides they find: the fewer, the more sides there are;
  *   3. E = direct + albedo * mean of E over what the rays found, repeated until light has gone everywhere (Jacobi);
- *   4. sides below the threshold ask again, with more rays of their own and rays towards the lights: triangles too small
- *      for 1 and 2 are not darkened by bad luck (reach_ask.c).
- * A side gets about ten rays in all, whatever it is part of.
+ *   4. sides that hang together with sides that some light comes to, but are faint themselves, shoot more, and 3 is repeated:
+ * light that comes through few ways is found by few rays;
+ *   5. sides whose rays do not make them lit for sure ask with more rays of their own and rays towards the lights: triangles
+ * too small for 1 and 2 are not darkened by bad luck (reach_ask.c). A side gets about ten rays in all, whatever it is part of,
+ * unless it lies where it gets dark.
  *
  * Sums over threads are integers, everything else is computed by one thread in a fixed order: the result does not depend on
  * threads. In doubt a side is lit: all surfaces reflect more than most real ones, lights have no range, cut-outs stop no ray,
@@ -17,13 +19,15 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #define LEAST_LIGHT_RAYS (1u << 18) /* of step 1: two a side between these */
 #define MOST_LIGHT_RAYS (1u << 20)
-#define LEAST_GATHERED 5u /* rays a side in step 2, between these and so that they are GATHERED in all */
+#define LEAST_GATHERED 4u /* rays a side in step 2, between these and so that they are GATHERED in all */
 #define MOST_GATHERED 16u
 #define GATHERED (1u << 20)
+#define LOOKED 16u                  /* and so many more by faint ones in step 4 */
 #define GATHERED_BY_AREA (1u << 17) /* and so many by area: what large sides give lights much */
 #define ITERATIONS 40               /* 0.8^40 = 1e-4 */
 #define STILL 4                     /* turns without news after which nothing more comes */
@@ -55,23 +59,28 @@ uint32_t reach_look(const reach_search *s, uint32_t side, const ray_side *from, 
     return ray_scene_follow(&s->rays, origin, direction, side + i, distance);
 }
 
-/* Step 2. */
-static void gather(void *user, uint32_t side) {
-    reach_search *s = user;
-    const ray_side from = side_of(s->g, side);
-    float sum = 0.0f;
+/* The rays of a side from `from` on. */
+static void gather_from(reach_search *s, uint32_t side, uint32_t from) {
+    const ray_side face = side_of(s->g, side);
     const uint32_t first = s->found_first[side], count = s->found_first[side + 1] - first;
-    for (uint32_t i = 0; i < count; i++) {
+    float sum = 0.0f;
+    for (uint32_t i = from; i < count; i++) {
         float distance;
-        const uint32_t found = reach_look(s, side, &from, i, &distance);
+        const uint32_t found = reach_look(s, side, &face, i, &distance);
         s->found[first + i] = found;
         sum += found != RAY_NOTHING ? distance : 0.0f;
     }
-    s->path[side] = sum;
+    s->path[side] += sum;
+    atomic_fetch_add_explicit(&s->shot, count - from, memory_order_relaxed);
+}
+
+/* Step 2. */
+static void gather(void *user, uint32_t side) {
+    reach_search *s = user;
+    gather_from(s, side, 0);
     const double flux = (double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE;
     s->direct[side] = (float)(flux / (double)s->area[side / 2]);
     s->irradiance[side] = s->direct[side];
-    atomic_fetch_add_explicit(&s->shot, count, memory_order_relaxed);
 }
 
 /* Step 3. */
@@ -142,21 +151,69 @@ static float threshold_of(const reach_search *s) {
     return area > 0.0 ? (float)((double)REACH_THRESHOLD * mean / area) : 0.0f;
 }
 
-static void run_steps(reach_search *s, unsigned threads, reach_progress_fn *progress, void *user) {
+/* Step 4. */
+static void gather_faint(void *user, uint32_t side) {
+    reach_search *s = user;
+    if (s->faint[side])
+        gather_from(s, side, s->found_first[side + 1] - s->found_first[side] - LOOKED);
+}
+
+/* Makes room for LOOKED rays more of each faint side. False: out of memory. */
+static bool make_room(reach_search *s) {
+    uint32_t more = 0;
+    for (uint32_t side = 0; side < s->sides; side++)
+        more += s->faint[side] ? LOOKED : 0;
+    const uint32_t all = s->found_first[s->sides];
+    uint32_t *found = more <= UINT32_MAX - all ? realloc(s->found, ((size_t)all + more) * sizeof *found) : NULL;
+    if (!found)
+        return false;
+    s->found = found;
+    for (uint32_t side = s->sides; side > 0; side--) { /* from the end, where the room is */
+        const uint32_t first = s->found_first[side - 1], count = s->found_first[side] - first;
+        s->found_first[side] += more;
+        more -= s->faint[side - 1] ? LOOKED : 0;
+        memmove(found + first + more, found + first, count * sizeof *found);
+    }
+    return true;
+}
+
+static uint32_t patches(const reach_search *s) {
+    return (s->m->triangles + PATCH_TRIANGLES - 1) / PATCH_TRIANGLES;
+}
+
+/* False: out of memory. */
+static bool look_closer(reach_search *s, unsigned threads) {
+    parallel_for(threads, patches(s), reach_find_faint, s);
+    if (!make_room(s))
+        return false;
+    parallel_for(threads, s->sides, gather_faint, s);
+    solve(s, threads);
+    s->threshold = threshold_of(s);
+    return true;
+}
+
+/* False: out of memory. */
+static bool run_steps(reach_search *s, unsigned threads, reach_progress_fn *progress, void *user) {
     parallel_for(threads, s->light_rays, shoot_from_light, s);
     if (progress)
         progress(user, 0.1);
     parallel_for(threads, s->sides, gather, s);
     if (progress)
-        progress(user, 0.5);
+        progress(user, 0.4);
     solve(s, threads);
     s->threshold = threshold_of(s);
     if (progress)
-        progress(user, 0.6);
-    if (s->threshold > 0.0f)
-        parallel_for(threads, (s->m->triangles + PATCH_TRIANGLES - 1) / PATCH_TRIANGLES, reach_ask_patch, s);
+        progress(user, 0.5);
+    if (s->threshold > 0.0f) {
+        if (!look_closer(s, threads))
+            return false;
+        if (progress)
+            progress(user, 0.6);
+        parallel_for(threads, patches(s), reach_ask_patch, s);
+    }
     if (progress)
         progress(user, 1.0);
+    return true;
 }
 
 static void flag_dark_sides(const reach_search *s, reach *out) {
@@ -201,9 +258,10 @@ static bool allocate(reach_search *s) {
     s->direct = malloc(s->sides * sizeof *s->direct);
     s->irradiance = malloc(s->sides * sizeof *s->irradiance);
     s->next_irradiance = malloc(s->sides * sizeof *s->next_irradiance);
-    s->path = malloc(s->sides * sizeof *s->path);
+    s->path = calloc(s->sides, sizeof *s->path);
     s->lit = calloc(s->sides, sizeof *s->lit);
-    return share_rays(s) && s->flux && s->direct && s->irradiance && s->next_irradiance && s->path && s->lit;
+    s->faint = calloc(s->sides, sizeof *s->faint);
+    return share_rays(s) && s->flux && s->direct && s->irradiance && s->next_irradiance && s->path && s->lit && s->faint;
 }
 
 static void release(reach_search *s) {
@@ -218,6 +276,7 @@ static void release(reach_search *s) {
     free(s->next_irradiance);
     free(s->path);
     free(s->lit);
+    free(s->faint);
 }
 
 /* Areas and lights. False: out of memory. */
@@ -243,11 +302,10 @@ vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bo
         release(&s);
         return VIT_OK;
     }
-    if (!fine || !allocate(&s) || !ray_scene_open(m, g, threads, &s.rays)) {
+    if (!fine || !allocate(&s) || !ray_scene_open(m, g, threads, &s.rays) || !run_steps(&s, threads, progress, user)) {
         snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");
         status = VIT_FAILED;
     } else {
-        run_steps(&s, threads, progress, user);
         out->free_path = mean_free_path(&s);
         flag_dark_sides(&s, out);
     }

@@ -10,7 +10,6 @@ _Static_assert((SLOTS & (SLOTS - 1)) == 0 && SLOTS > 3 * PATCH_TRIANGLES, "a tab
 typedef struct edge {
     uint16_t a, b;      /* corners, a < b */
     uint16_t side[2];   /* the sides that are fronts where the edge goes from a to b */
-    uint16_t place[2];  /* which edge of its triangle: 0 .. 2 */
     uint16_t triangles; /* that share it; more than 2: none are neighbours */
 } edge;
 
@@ -37,7 +36,7 @@ static uint16_t corner_of(const float *corners[SLOTS], uint16_t numbers[SLOTS], 
     return numbers[at] = (*count)++;
 }
 
-static void note_edge(edge edges[SLOTS], uint32_t triangle, uint16_t place, uint16_t from, uint16_t to) {
+static void note_edge(edge edges[SLOTS], uint32_t triangle, uint16_t from, uint16_t to) {
     const bool ahead = from < to;
     const uint16_t a = ahead ? from : to, b = ahead ? to : from;
     uint32_t at = mixed((uint32_t)a << 16 | b) & (SLOTS - 1);
@@ -48,7 +47,6 @@ static void note_edge(edge edges[SLOTS], uint32_t triangle, uint16_t place, uint
         e->a = a;
         e->b = b;
         e->side[e->triangles] = (uint16_t)(2 * triangle + !ahead);
-        e->place[e->triangles] = place;
     }
     e->triangles++;
 }
@@ -59,9 +57,7 @@ static uint16_t root_of(uint16_t group[PATCH_SIDES], uint16_t side) {
     return side;
 }
 
-static void link(reach_patch *p, uint16_t a, uint16_t place_a, uint16_t b, uint16_t place_b) {
-    p->beside[a][place_a] = b;
-    p->beside[b][place_b] = a;
+static void link(reach_patch *p, uint16_t a, uint16_t b) {
     const uint16_t x = root_of(p->group, a), y = root_of(p->group, b);
     p->group[x > y ? x : y] = x > y ? y : x;
 }
@@ -73,7 +69,6 @@ void patch_link(const geometry *g, uint32_t first, uint32_t count, reach_patch *
     memset(edges, 0, sizeof edges);
     out->first = first;
     out->count = count;
-    memset(out->beside, 0xff, sizeof out->beside);
     for (uint32_t i = 0; i < 2 * count; i++)
         out->group[i] = (uint16_t)i;
     for (uint32_t i = 0; i < count; i++) {
@@ -83,14 +78,14 @@ void patch_link(const geometry *g, uint32_t first, uint32_t count, reach_patch *
                                corner_of(corners, numbers, &corner_count, t->v2)};
         for (uint16_t k = 0; k < 3; k++)
             if (c[k] != c[(k + 1) % 3])
-                note_edge(edges, i, k, c[k], c[(k + 1) % 3]);
+                note_edge(edges, i, c[k], c[(k + 1) % 3]);
     }
     for (uint32_t i = 0; i < SLOTS; i++) { /* fronts of neighbours run along their edge in opposite directions */
         const edge *e = edges + i;
         if (e->triangles != 2 || e->side[0] / 2 == e->side[1] / 2)
             continue;
-        link(out, e->side[0], e->place[0], e->side[1] ^ 1, e->place[1]);
-        link(out, e->side[0] ^ 1, e->place[0], e->side[1], e->place[1]);
+        link(out, e->side[0], e->side[1] ^ 1);
+        link(out, e->side[0] ^ 1, e->side[1]);
     }
     for (uint32_t i = 0; i < 2 * count; i++)
         out->group[i] = root_of(out->group, (uint16_t)i);

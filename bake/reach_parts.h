@@ -34,7 +34,7 @@ typedef struct reach_search {
     float *direct, *irradiance, *next_irradiance;
     float *path;               /* a side: summed length of the rays of step 2 that found something, m */
     float threshold;           /* irradiance by reflection below which a side is dark */
-    bool *lit;                 /* a side */
+    bool *lit, *faint;         /* a side; faint: to be looked at more closely (step 4) */
     atomic_uint newly_reached; /* sides that light came to in the last turn of step 3 */
     atomic_ullong shot;        /* rays */
 } reach_search;
@@ -58,15 +58,17 @@ bool lights_ask(const reach_search *s, uint32_t side, const ray_side *from, uint
  * only they share, on the same side of the surface. */
 #define PATCH_TRIANGLES 128u
 #define PATCH_SIDES (2u * PATCH_TRIANGLES)
-#define PATCH_NONE 0xffffu
 typedef struct reach_patch {
-    uint32_t first, count;           /* triangles */
-    uint16_t beside[PATCH_SIDES][3]; /* a side, from 2 * first on: its neighbours, or PATCH_NONE */
-    uint16_t group[PATCH_SIDES];     /* the least side that it hangs together with */
+    uint32_t first, count;       /* triangles */
+    uint16_t group[PATCH_SIDES]; /* a side, from 2 * first on: the least side that it hangs together with */
 } reach_patch;
 void patch_link(const geometry *g, uint32_t first, uint32_t count, reach_patch *out);
 
-/* reach_ask.c: sets s->lit of the sides of patch `patch` by what is known and, where that is nothing, by further rays. */
+/* reach_ask.c, both by what is known and for patch `patch`. */
+/* Sets s->faint: hanging together with sides that some light comes to, but having less than REACH_FAINT thresholds of it. */
+#define REACH_FAINT 1000.0f
+void reach_find_faint(void *search, uint32_t patch);
+/* Sets s->lit, by further rays where it is not known. */
 void reach_ask_patch(void *search, uint32_t patch);
 
 #endif

@@ -1,7 +1,9 @@
-/* Sides that light can reach: seconds and rays over the number of triangles, and the exponent that fits them; 1 is linear. Only
- * reach_dark_sides() is timed. Argument: the most triangles, default 5 million. */
+/* Sides that light can reach: seconds of CPU, all threads, and rays over the number of triangles, the exponent that fits the
+ * seconds (1 is linear) and the memory of the process at its most. Only reach_dark_sides() is timed. Argument: the most
+ * triangles, default 5 million. */
 #include "reach.h"
 #include "reach_models.h"
+#include <sys/resource.h>
 
 #define LEAST 10000u
 #define MOST 5000000u
@@ -20,6 +22,19 @@ static double exponent(const double *x, const double *y, int count) {
     return (count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
 
+static struct rusage usage(void) {
+    struct rusage r;
+    if (getrusage(RUSAGE_SELF, &r) != 0)
+        bench_fail("getrusage");
+    return r;
+}
+
+static double cpu_seconds(void) {
+    const struct rusage r = usage();
+    return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) + 1e-6 * (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
+}
+
+/* Its `seconds` become those of CPU: other processes do not count. */
 static reach measure(bool balls, uint32_t triangles, uint32_t *made) {
     reach_model r;
     bvh b;
@@ -27,9 +42,12 @@ static reach measure(bool balls, uint32_t triangles, uint32_t *made) {
     reach found;
     vit_text why = {""};
     reach_model_make(&r, balls, triangles);
-    if (bvh_build(&r.m, 0, &b, &why) != VIT_OK || geometry_pack(&r.m, &b, &g, &why) != VIT_OK ||
-        reach_dark_sides(&r.m, &r.t, REACH_FRAMES, false, &g, 0, NULL, NULL, &found, &why) != VIT_OK)
+    if (bvh_build(&r.m, 0, &b, &why) != VIT_OK || geometry_pack(&r.m, &b, &g, &why) != VIT_OK)
         bench_fail("%s", why.text);
+    const double start = cpu_seconds();
+    if (reach_dark_sides(&r.m, &r.t, REACH_FRAMES, false, &g, 0, NULL, NULL, &found, &why) != VIT_OK)
+        bench_fail("%s", why.text);
+    found.seconds = cpu_seconds() - start;
     *made = r.m.triangles;
     if (!(found.dark_front + found.dark_back > 0.3 * found.area)) /* backs, at least */
         bench_fail("%u triangles: hardly anything is dark", r.m.triangles);
@@ -52,8 +70,8 @@ static void measure_all(csv *c, bool balls, uint32_t most) {
         (void)snprintf(size, sizeof size, "%u", made);
         csv_row(c, name, size, "seconds", &s, "s");
         csv_row(c, name, size, "rays a side", &rays, "1");
-        printf("%-6s %8u triangles  %8.2f s  %6.1f rays a side  %5.1f %% dark\n", name, made, found.seconds, rays.value[0],
-               100.0 * (found.dark_front + found.dark_back) / found.area);
+        printf("%-6s %8u triangles  %8.2f s  %6.1f rays a side  %5.1f %% dark  %5ld MB\n", name, made, found.seconds,
+               rays.value[0], 100.0 * (found.dark_front + found.dark_back) / found.area, usage().ru_maxrss / 1024);
         triangles[count] = made;
         seconds[count++] = found.seconds;
     }

@@ -309,6 +309,45 @@ static void insides_of_bodies_cost_few_rays(void **state) {
     drop(f);
 }
 
+/* A wall across the long room of the next function, with a square hole of `width` m about (x, 2.5, z). */
+static void add_wall(fixture *f, float x, float z, float width) {
+    const float near = z - 0.5f * width, far = z + 0.5f * width, beside = 2.5f - 0.5f * width;
+    add_plate(f, (const float[]){x, 0, -5}, (const float[]){0, 5, 0}, (const float[]){0, 0, near + 5}, 8);
+    add_plate(f, (const float[]){x, 0, far}, (const float[]){0, 5, 0}, (const float[]){0, 0, 5 - far}, 8);
+    add_plate(f, (const float[]){x, 0, near}, (const float[]){0, beside, 0}, (const float[]){0, 0, width}, 2);
+    add_plate(f, (const float[]){x, 5 - beside, near}, (const float[]){0, beside, 0}, (const float[]){0, 0, width}, 2);
+}
+
+/* Three rooms of 400 m2 in a row, the lamp in the first, each open to the next by a hole out of the lamp's sight: what comes
+ * in, 0.8 E width^2, is what 0.2 of the walls swallow, so each has 1e-2 width^2 of the irradiance before it; the threshold
+ * is 1.8e-5 of the first. Returns the part of the last one's outer walls that is lit. */
+static double lit_behind_two_holes(float width) {
+    fixture *f = make();
+    const uint32_t box = add_box(f, (const float[]){-15, 0, -5}, (const float[]){15, 5, 5}, 24), end = f->m.triangles;
+    add_wall(f, 5, -3, width);
+    add_wall(f, -5, 3, width);
+    add_light(f, 10, 4, 4);
+    search(f, 2);
+    uint32_t walls = 0, lit = 0;
+    for (uint32_t i = box; i < end; i++) {
+        const float *p = f->m.position + 9 * (size_t)i;
+        if (p[0] + p[3] + p[6] < 3 * -5.0f) {
+            walls++;
+            lit += !(f->flags[i] & VIT_SIDE_DARK_BACK);
+        }
+    }
+    drop(f);
+    return (double)lit / walls;
+}
+
+static void a_dim_room_is_lit_and_a_dimmer_one_dark(void **state) {
+    (void)state;
+    const double dim = lit_behind_two_holes(0.9f), dimmer = lit_behind_two_holes(0.5f);
+    print_message("lit: %.4f with 3.6 times the threshold, %.4f with 0.35 of it\n", dim, dimmer);
+    assert_true(dim > 0.98);
+    assert_true(dimmer < 0.05);
+}
+
 static void without_light_nothing_is_flagged(void **state) {
     (void)state;
     fixture *f = make();
@@ -501,6 +540,7 @@ int main(void) {
         cmocka_unit_test(a_room_that_the_light_visits_for_one_frame_is_lit),
         cmocka_unit_test(a_spot_light_lights_only_its_cone),
         cmocka_unit_test(insides_of_bodies_cost_few_rays),
+        cmocka_unit_test(a_dim_room_is_lit_and_a_dimmer_one_dark),
         cmocka_unit_test(without_light_nothing_is_flagged),
         cmocka_unit_test(one_thread_and_two_flag_the_same_sides),
         cmocka_unit_test(light_goes_the_mean_chord_of_a_cube),
