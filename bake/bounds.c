@@ -65,6 +65,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     vit_scene s = *in->scene;
     pack_sections sections = *in->sections;
     run r;
+    /* 1. the scene with clusters and without light */
     s.effects = (s.effects & ~vit_effects_upon(VIT_BIT(PHOTONS))) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
     s.cells = 0;
     s.paths = 0;
@@ -93,7 +94,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     free(dark);
     if (status != VIT_OK)
         return status;
-    uint32_t least = UINT32_MAX, most = 0;
+    uint32_t least = UINT32_MAX, most = 0; /* 2. the slices that its frames use */
     for (uint32_t i = 0; i < s.frames && status == VIT_OK; i++) {
         vit_statistics stats;
         status = frame(in, &r, i, "depth slices", why);

@@ -1,5 +1,5 @@
 /* pipeline_load, once a scene: import -> tracks -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
- * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> emitters -> photons; then with
+ * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> guides -> emitters -> photons; with
  * radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it, photons again; then zones
  * and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds (the whole path is played) -> effects
  * that rays met -> pack. */

@@ -194,7 +194,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         snprintf(why->text, sizeof why->text, "out of memory");
         return VIT_FAILED;
     }
-    plan_materials(m, a, out);
+    plan_materials(m, a, out); /* 1. constants */
     c->width = (uint32_t)s->width;
     c->height = (uint32_t)s->height;
     c->frames = (uint32_t)s->frames;
@@ -228,7 +228,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
                               .atlas = a,
                               .ray_offset = g->ray_offset,
                               .box_pad = b->box_pad};
-    sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius);
+    sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius); /* 2. lights, and who gets how many photon paths */
     vit_status status = emitters_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
     if (status == VIT_OK)
         status = share_paths(s, t, round, r, NULL, out, why);
@@ -236,6 +236,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         plan_free(out);
         return status;
     }
+    /* 3. effects that the scene calls for, then what `effects` of the scene file says of them */
     c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
@@ -258,7 +259,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
     if (!has_paths(t, out)) /* its sources were left out */
         effects_drop(c, VIT_BIT(PHOTONS));
-    if (c->effects & VIT_BIT(PHOTONS)) {
+    if (c->effects & VIT_BIT(PHOTONS)) { /* 4. the photons' radius */
         out->lit_area = lit_area(r);
         out->free_path = r->free_path;
         double slots = (double)s->quality.photons * (s->quality.bounces - 1);

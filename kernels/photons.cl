@@ -113,7 +113,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     for (uint i = 0; i < scene->lights; i++, light++)
         if (light->path_count > 0 && first >= light->path_first && first < light->path_first + light->path_count)
             break;
-    lu path = L_U(first) + L_AS_UINT(L_INDEX);
+    lu path = L_U(first) + L_AS_UINT(L_INDEX); /* 1. The light's part of the paths, (13) */
     li alive = L_I(0);
     lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o, from = o; /* from: normal of the matt surface that the photon comes from; 0: of none */
     if (light < lights + (size_t)(frame + 1) * scene->lights) {
@@ -129,7 +129,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     uint stored = 0;
     WORK_BEGIN
     for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
-        lf t = L_F(3e38f);
+        lf t = L_F(3e38f); /* 2. What the ray meets */
         li triangle = L_I(0);
         surface s = surface_none(o);
         if (l_any(alive)) {
@@ -152,7 +152,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             if (!VIT_EFFECT_CAUSTICS)
                 alive = matt;
         }
-        if (hit_number > 0) {
+        if (hit_number > 0) { /* 3. A photon, (15) and (21) */
             lu zone = L_U(0);
             if (VIT_EFFECT_ZONES && l_any(alive)) {
                 cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
@@ -167,12 +167,12 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
             power = lv3_scale(power, light_left(light, t * t));
         lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
-        lf u, v;
+        lf u, v; /* 4. On from a matt surface, (14) */
         photon_numbers(path, hit_number, &u, &v);
         next = ray_cosine(s.face, u, v);
         o = s.position;
         from = lv3_sel(matt, s.face, lv3_set(L_F(0), L_F(0), L_F(0)));
-        if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) {
+        if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) { /* 5. On from mirrors and glass */
             lv3 start = o, on = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular;
             li glass = alive & ~matt & L_NE(s.shine.kind, L_I((int)VIT_MIRROR));
             if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
@@ -188,7 +188,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             o = lv3_sel(matt, o, start);
             reflectance = lv3_sel(matt, reflectance, tint);
         }
-        power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z);
+        power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z); /* 6. What is left */
         alive &= L_GT(power.x + power.y + power.z, L_F(0));
         d = next;
     }

@@ -42,13 +42,13 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
     li hit = L_NE(triangle, L_I((int)VIT_NONE));
     lv3 light = lv3_load(scene->background), eye = lv3_load(camera->eye), d = eye;
     lf t = l_sel(hit, L_LOAD(hit_distance + first), L_F(1)), whole = t;
-    if (VIT_EFFECT_CHAINS) {
+    if (VIT_EFFECT_CHAINS) { /* 1. The ray that found the sample */
         eye = chain_origin(rays, n, first);
         d = chain_direction(rays, n, first);
         whole = l_sel(hit, chain_length(rays, n, first), L_F(1));
     } else if (VIT_EFFECT_SKY_IMAGE || l_any(hit))
         d = l_camera_ray(scene, camera, round / layers, x, y);
-    if (VIT_EFFECT_SKY_IMAGE && l_any(~hit))
+    if (VIT_EFFECT_SKY_IMAGE && l_any(~hit)) /* 2. Nothing is hit: the sky */
         light = sky_radiance(scene, sky, d);
     if (VIT_EFFECT_REACH) {
         reach_note(scene, attributes, reached, hit, triangle, VIT_REACHED_VIEW);
@@ -57,7 +57,7 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
     }
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
-    if (l_any(hit)) {
+    if (l_any(hit)) { /* 3. The surface: position, normal, reflectances */
         lf cone = L_F(camera_cone(scene, camera, round / layers));
         if (VIT_EFFECT_CHAINS) /* the footprint goes on widening behind a mirror as if it were flat */
             cone *= l_div(whole, l_max(t, L_F(1e-30f)));
@@ -71,13 +71,13 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             L_STORE(l_sel_u(hit, l_encode_albedo(s.shine.specular), L_U(0)), gloss + first);
             L_STORE(l_sel_u(hit, L_AS_UINT(s.shine.exponent), L_U(0)), gloss + n + first);
         }
-        lv3 own = s.emission;
+        lv3 own = s.emission; /* 4. Its own light */
         if (VIT_EFFECT_AMBIENT) {
             lv3 all = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo;
             own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y), fma(all.z, L_F(scene->ambient[2]), own.z));
         }
         light = lv3_sel(hit, own, light);
-        if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) {
+        if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) { /* 5. What is baked for its cell */
             cell_place cell = cell_at(sides, hit, triangle, s.back, s.b1, s.b2);
             if (VIT_EFFECT_ZONES)
                 L_STORE(l_sel_u(hit, cell_accept(cells, &cell), L_U(0)), accept + first);
