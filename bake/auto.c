@@ -29,10 +29,13 @@ static const int bounces[] = {4, 6, 8, 12, 16, 24, 32};
 
 typedef struct search {
     pipeline *p;
+    progress *loud; /* says what is tried; the pipeline's own shows no more than its stages */
     auto_found *out;
-    scene_quality base; /* defaults and what is kept */
-    double radius;      /* that is automatic with the base, m; 0: there are no photons */
-    bool photons;       /* the scene has indirect light */
+    scene_quality base;  /* defaults and what is kept */
+    double radius;       /* that is automatic with the base, m; 0: there are no photons */
+    bool photons;        /* the scene has indirect light */
+    scene_quality first; /* of the plainest pack, */
+    check_found found;   /* what that has, and from then on the parts that direct light has in what was found last */
 } search;
 
 static bool kept(const search *s, uint32_t setting) {
@@ -48,13 +51,24 @@ static vit_status pack(const search *s, const scene_quality *q, pipeline_packed 
     return pipeline_pack(s->p, &c, out, why);
 }
 
-static vit_status measure(const search *s, const scene_quality *q, check_found *found, vit_text *why) {
+/* A line of what was tried. */
+static void say_tried(const search *s, const scene_quality *q, const check_found *found) {
+    char settings[AUTO_TEXT], figures[128];
+    scene_quality_difference(q, settings, sizeof settings);
+    check_text(found, figures, sizeof figures);
+    progress_line(s->loud, false, "  tried { %s}: %s", settings, figures);
+}
+
+/* parts: direct light alone, too. */
+static vit_status measure(const search *s, const scene_quality *q, bool parts, check_found *found, vit_text *why) {
     pipeline_packed packed;
     vit_status status = pack(s, q, &packed, why);
     if (status != VIT_OK)
         return status;
-    status = check_compare(s->p, &packed, &s->out->check, true, found, why);
+    status = check_compare(s->p, &packed, &s->out->check, parts, found, why);
     pipeline_packed_free(&packed);
+    if (status == VIT_OK)
+        say_tried(s, q, found);
     return status;
 }
 
@@ -81,14 +95,15 @@ static vit_status choose_samples(search *s, const pipeline_packed *packed, doubl
         check_found found;
         q.light_samples = points ? samples : q.light_samples;
         q.sky_samples = directions ? samples : q.sky_samples;
-        const vit_status status = measure(s, &q, &found, why);
+        const vit_status status = measure(s, &q, true, &found, why);
         s->out->tried++;
         if (status != VIT_OK)
             return status;
         if (fabs(found.direct - 1) > 0.8 * fabs(direct - 1))
             return VIT_OK;
         direct = found.direct;
-        s->base = q;
+        s->base = s->first = q;
+        s->found = found;
     }
     return VIT_OK;
 }
@@ -108,19 +123,21 @@ static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
 /* The reference, and what follows from it and from the plainest pack. */
 static vit_status begin(search *s, vit_text *why) {
     pipeline_packed packed;
-    check_found found;
     vit_status status = pack_guided(s, &packed, why);
     if (status != VIT_OK)
         return status;
     status = check_trace(s->p, &packed, &s->out->check, why);
     if (status == VIT_OK)
-        status = check_compare(s->p, &packed, &s->out->check, true, &found, why);
+        status = check_compare(s->p, &packed, &s->out->check, true, &s->found, why);
+    if (status == VIT_OK)
+        say_tried(s, &s->base, &s->found);
+    s->first = s->base;
     s->photons = (packed.plan.scene.effects & VIT_BIT(PHOTONS)) != 0;
     s->radius = (double)packed.plan.scene.radius;
     if (status == VIT_OK && s->photons)
         status = choose_bounces(s, &packed, why);
     if (status == VIT_OK)
-        status = choose_samples(s, &packed, found.direct, why);
+        status = choose_samples(s, &packed, s->found.direct, why);
     pipeline_packed_free(&packed);
     return status;
 }
@@ -165,9 +182,13 @@ static vit_status climb(search *s, vit_text *why) {
         tried[count] = quality_of(s, rungs + i);
         if (is_tried(tried, count, tried + count))
             continue;
-        const vit_status status = measure(s, tried + count, &found, why);
+        const bool known = is_tried(&s->first, 1, tried + count);
+        const vit_status status = known ? VIT_OK : measure(s, tried + count, false, &found, why);
         if (status != VIT_OK)
             return status;
+        if (known)
+            found = s->found;
+        found.direct = s->found.direct; /* the same in all of them */
         a->tried++;
         if (distance(&found) < best) {
             best = distance(&found);
@@ -182,16 +203,17 @@ static vit_status climb(search *s, vit_text *why) {
 }
 
 vit_status auto_choose(pipeline *p, auto_found *out, vit_text *why) {
-    search s = {.p = p, .out = out, .base = p->scene.quality};
+    search s = {.p = p, .loud = p->progress, .out = out, .base = p->scene.quality};
     progress *const loud = p->progress;
-    progress silent = progress_make(true);
+    progress within = progress_within(loud);
     memset(out, 0, sizeof *out);
     check_choose((uint32_t)p->scene.frames, (uint32_t)p->scene.width, (uint32_t)p->scene.height, &out->check);
     progress_stage(loud, "choosing the quality");
-    p->progress = &silent;
+    p->progress = &within;
     vit_status status = begin(&s, why);
     if (status == VIT_OK)
         status = climb(&s, why);
+    progress_end(&within);
     p->progress = loud;
     progress_end(loud);
     if (status == VIT_OK)
@@ -210,6 +232,10 @@ void auto_say(const pipeline *p, const pipeline_packed *packed, const auto_found
             p->progress, true,
             "warning: quality \"auto\": the best of %u settings, { %s}, has %s of path tracing's at %u pixels of %u frames%s%s",
             a->tried, a->text, figures, a->check.count, a->check.frame_count, cure[0] ? "; " : "", cure);
+    else if (!a->text[0])
+        progress_line(p->progress, false,
+                      "quality \"auto\": the defaults are right; checked against path tracing at %u pixels of %u frames: %s",
+                      a->check.count, a->check.frame_count, figures);
     else
         progress_line(p->progress, false,
                       "quality \"auto\": { %s}, of %u tried %s; checked against path tracing at %u pixels of %u frames: %s",

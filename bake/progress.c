@@ -14,6 +14,10 @@ progress progress_make(bool quiet) {
     return (progress){.quiet = quiet, .terminal = !quiet && isatty(STDERR_FILENO)};
 }
 
+progress progress_within(const progress *outer) {
+    return (progress){.quiet = true, .terminal = outer->terminal};
+}
+
 static void wipe(const progress *p) {
     if (p->terminal && p->stage)
         fputs("\r\033[K", stderr);

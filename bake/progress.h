@@ -7,11 +7,13 @@
 
 typedef struct progress {
     bool quiet, terminal;
-    const char *stage;         /* text of the caller's, alive while the stage lasts */
-    double began, drawn;       /* seconds, monotonic */
+    const char *stage;   /* text of the caller's, alive while the stage lasts */
+    double began, drawn; /* seconds, monotonic */
 } progress;
 
 progress progress_make(bool quiet);
+/* Of work that is part of a stage of another's: shows its stages while they last, on a terminal, and leaves no lines. */
+progress progress_within(const progress *outer);
 /* Ends the stage before, if any. */
 void progress_stage(progress *p, const char *stage);
 /* fraction of the stage done, 0..1; redraws at most ten times a second. */
