@@ -41,9 +41,10 @@ static bool is_flat(const model *m, const uint32_t corner[3], const vit_triangle
     return true;
 }
 
-static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t material, const vit_triangle *t, vit_attributes *a) {
+static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t material, const vit_u32 *normals,
+                            const vit_triangle *t, vit_attributes *a) {
     for (size_t i = 0; i < 3; i++) {
-        a->normal[i] = normal_word(m->normal + 3 * (size_t)corner[i]);
+        a->normal[i] = normals[corner[i]];
         memcpy(a->uv[i], m->uv + 2 * (size_t)corner[i], sizeof a->uv[i]);
     }
     a->material = material | (is_flat(m, corner, t) ? 0 : VIT_TRIANGLE_SMOOTH);
@@ -69,16 +70,21 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
     *out = (geometry){0};
     out->triangles = calloc(m->triangles, sizeof *out->triangles);
     out->attributes = calloc(m->triangles, sizeof *out->attributes);
-    if (!out->triangles || !out->attributes) {
+    vit_u32 *normals = malloc((m->vertices + (size_t)1) * sizeof *normals); /* a vertex: six corners share it, mostly */
+    if (!out->triangles || !out->attributes || !normals) {
         geometry_free(out);
+        free(normals);
         snprintf(why->text, sizeof why->text, "geometry: out of memory for %u triangles", m->triangles);
         return VIT_FAILED;
     }
+    for (uint32_t i = 0; i < m->vertices; i++)
+        normals[i] = normal_word(m->normal + 3 * (size_t)i);
     for (uint32_t i = 0; i < m->triangles; i++) {
         const uint32_t *corner = m->index + 3 * (size_t)b->order[i];
         pack_triangle(m, corner, out->triangles + i);
-        pack_attributes(m, corner, m->material[b->order[i]], out->triangles + i, out->attributes + i);
+        pack_attributes(m, corner, m->material[b->order[i]], normals, out->triangles + i, out->attributes + i);
     }
+    free(normals);
     out->ray_offset = geometry_ray_offset(m);
     return VIT_OK;
 }
