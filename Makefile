@@ -74,7 +74,7 @@ HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-comp
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
-.PHONY: all tools help deps fuzz-deps lint-deps demo run-demo cost run-cost test soak bench clean install format
+.PHONY: all tools help deps fuzz-deps lint-deps demo run-demo cost run-cost test soak bench clean install format readme
 all: deps
 	@$(MAKE) $(SIDE_BY_SIDE) tools
 tools: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost
@@ -194,11 +194,15 @@ help:
 	@echo "make bench    speed: rays against Embree, milliseconds a pass; CSV in build/bench"
 	@echo "make smoke    short forms of bench, matrix, numeric, soak, lint, coverage, fuzz and of the build without OpenCL, for continuous integration"
 	@echo "make install  prefix=$(prefix)"
-	@echo "make deps | all | clean | format     config=release|debug|sanitize|fuzz|coverage"
+	@echo "make deps | all | clean | format | readme     config=release|debug|sanitize|fuzz|coverage"
 
 clean:
 	rm -rf build
 format:
 	clang-format -i $$(git ls-files '*.c' '*.h')
+# Tables in READMEs that are made from the code.
+readme: $(B)/vitrine-bake
+	$(B)/vitrine-bake --settings > $(B)/settings_table
+	sed -i -e '/^<!-- settings/,/^<!-- end of settings/{//!d}' -e '/^<!-- settings/r $(B)/settings_table' bake/README.md
 
 -include $(shell find $(B) -name '*.d' -type f 2>/dev/null)

@@ -75,7 +75,7 @@ static vit_status measure(const search *s, const scene_quality *q, bool parts, c
 /* As many bounces as leave hardly any light out. */
 static vit_status choose_bounces(search *s, const pipeline_packed *packed, vit_text *why) {
     const int count = (int)(sizeof bounces / sizeof bounces[0]);
-    for (int i = 0; i < count && !kept(s, QUALITY_KEPT_BOUNCES); i++) {
+    for (int i = 0; i < count && !kept(s, SETTING_BIT(bounces)); i++) {
         double share;
         s->base.bounces = bounces[i];
         const vit_status status = check_share(s->p, packed, &s->out->check, (uint32_t)bounces[i], &share, why);
@@ -88,8 +88,8 @@ static vit_status choose_bounces(search *s, const pipeline_packed *packed, vit_t
 /* More points on lamps, more directions to the sky, as long as direct light is off and that helps. */
 static vit_status choose_samples(search *s, const pipeline_packed *packed, double direct, vit_text *why) {
     const uint64_t e = packed->plan.scene.effects;
-    const bool points = (e & VIT_BIT(AREA_LIGHTS)) && !kept(s, QUALITY_KEPT_LIGHT_SAMPLES),
-               directions = (e & VIT_BIT(SKY_LIGHT)) && !kept(s, QUALITY_KEPT_SKY_SAMPLES);
+    const bool points = (e & VIT_BIT(AREA_LIGHTS)) && !kept(s, SETTING_BIT(light_samples)),
+               directions = (e & VIT_BIT(SKY_LIGHT)) && !kept(s, SETTING_BIT(sky_samples));
     for (int samples = 64; (points || directions) && samples <= MOST_SAMPLES && fabs(direct - 1) > AUTO_DIRECT; samples *= 4) {
         scene_quality q = s->base;
         check_found found;
@@ -110,7 +110,7 @@ static vit_status choose_samples(search *s, const pipeline_packed *packed, doubl
 
 /* The plainest pack, guided where that is worth it. */
 static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
-    const bool may = !kept(s, QUALITY_KEPT_GUIDING);
+    const bool may = !kept(s, SETTING_BIT(guiding));
     s->base.guiding = may || s->base.guiding;
     vit_status status = pack(s, &s->base, out, why);
     if (status != VIT_OK || !may || out->guided_gain >= AUTO_GAIN)
@@ -144,12 +144,12 @@ static vit_status begin(search *s, vit_text *why) {
 
 static scene_quality quality_of(const search *s, const rung *r) {
     scene_quality q = s->base;
-    q.zones = kept(s, QUALITY_KEPT_ZONES) ? q.zones : r->zones;
-    q.light_zones = kept(s, QUALITY_KEPT_LIGHT_ZONES) ? q.light_zones : r->light_zones && q.zones;
-    q.effective_area = kept(s, QUALITY_KEPT_AREA) ? q.effective_area : r->areas;
-    if (!kept(s, QUALITY_KEPT_RADIUS) && r->radius < 1)
+    q.zones = kept(s, SETTING_BIT(zones)) ? q.zones : r->zones;
+    q.light_zones = kept(s, SETTING_BIT(light_zones)) ? q.light_zones : r->light_zones && q.zones;
+    q.effective_area = kept(s, SETTING_BIT(effective_area)) ? q.effective_area : r->areas;
+    if (!kept(s, SETTING_BIT(radius)) && r->radius < 1)
         q.radius = s->radius * r->radius;
-    if (!kept(s, QUALITY_KEPT_PHOTONS))
+    if (!kept(s, SETTING_BIT(photons)))
         q.photons = (int)fmin(q.photons * r->photons, MOST_PHOTONS);
     return q;
 }

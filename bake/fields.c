@@ -1,6 +1,9 @@
 #include "fields.h"
 #include "names.h"
+#include "option_text.h"
 #include "scene.h"
+#include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -101,22 +104,23 @@ int fields_place(const char *list, const char *text) {
     return -1;
 }
 
-/* "a|b|c" as `a, b or c`, each in quotes if they are words. */
-static void spell(const char *list, const char *quote, char *out, size_t room) {
+/* "a|b|c" as `a, b or c`, each between `open` and `close`. */
+static void spell(const char *list, const char *open, const char *close, char *out, size_t room) {
     size_t used = 0;
     out[0] = 0;
     for (const char *at = list; at && used < room;) {
         const char *bar = strchr(at, '|');
         const char *before = at == list ? "" : bar ? ", " : " or ";
         const int length = bar ? (int)(bar - at) : (int)strlen(at);
-        used += (size_t)snprintf(out + used, room - used, "%s%s%.*s%s", before, quote, length, at, quote);
+        used += (size_t)snprintf(out + used, room - used, "%s%s%.*s%s", before, open, length, at, close);
         at = bar ? bar + 1 : NULL;
     }
 }
 
 static bool read_listed(const place *at, const config_setting_t *s, const field *f, int *out) {
     const int type = config_setting_type(s);
-    const bool number = f->kind == FIELD_AMONG, fits = number ? type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64 : type == CONFIG_TYPE_STRING;
+    const bool number = f->kind == FIELD_AMONG,
+               fits = number ? type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64 : type == CONFIG_TYPE_STRING;
     char text[80] = "", allowed[128];
     if (fits && number)
         (void)snprintf(text, sizeof text, "%lld", config_setting_get_int64(s));
@@ -124,7 +128,7 @@ static bool read_listed(const place *at, const config_setting_t *s, const field 
         (void)snprintf(text, sizeof text, "%s", config_setting_get_string(s));
     const int found = fits ? fields_place(f->allowed, text) : -1;
     const char *quote = number ? "" : "\"";
-    spell(f->allowed, quote, allowed, sizeof allowed);
+    spell(f->allowed, quote, quote, allowed, sizeof allowed);
     if (found < 0)
         return fields_fail(at, s, "'%s' must be %s%s%s%.64s%s", f->name, allowed, fits ? ", got " : "", fits ? quote : "", text,
                            fits ? quote : "");
@@ -275,6 +279,78 @@ size_t fields_write(const field *f, const void *from, char *text, size_t room) {
     }
     const int used = word[0] ? snprintf(text, room, "%s = %s; ", f->name, word) : 0;
     return used < 0 ? 0 : (size_t)used < room ? (size_t)used : room - 1;
+}
+
+bool fields_put(const field *f, const char *text, void *out) {
+    void *to = (char *)out + f->offset;
+    long whole;
+    double number;
+    int found;
+    switch (f->kind) {
+    case FIELD_WHOLE:
+        if (!option_whole(text, INT_MIN, INT_MAX, &whole) || !in_range((double)whole, f->allowed))
+            return false;
+        *(int *)to = (int)whole;
+        return true;
+    case FIELD_NUMBER:
+    case FIELD_AUTO:
+        number = 0;
+        if (f->kind == FIELD_NUMBER || !text || strcmp(text, "auto") != 0)
+            if (!option_number(text, -DBL_MAX, DBL_MAX, &number) || !in_range(number, f->allowed))
+                return false;
+        *(double *)to = number;
+        return true;
+    case FIELD_SWITCH:
+    case FIELD_CHOICE:
+        found = fields_place(f->kind == FIELD_SWITCH ? "0|1" : f->allowed, text);
+        if (found < 0)
+            return false;
+        *(bool *)to = found == 1;
+        return true;
+    case FIELD_WORD:
+    case FIELD_AMONG:
+        found = fields_place(f->allowed, text);
+        if (found < 0)
+            return false;
+        *(int *)to = f->kind == FIELD_WORD ? found : atoi(text);
+        return true;
+    case FIELD_TEXT:
+    case FIELD_PATH:
+    case FIELD_VECTOR:
+    case FIELD_SCALE:
+    case FIELD_OTHER:
+        break;
+    }
+    return false;
+}
+
+void fields_wants(const field *f, const char *unit, char *text, size_t room) {
+    const bool number = f->kind == FIELD_WHOLE || f->kind == FIELD_NUMBER || f->kind == FIELD_AUTO;
+    const char *list = f->kind == FIELD_SWITCH ? "0|1" : f->allowed, *comma = strchr(list, ',');
+    if (number) {
+        const int low = (int)(comma - list) - 1, high = (int)strcspn(comma + 2, ")]");
+        (void)snprintf(text, room, "%s%.*s%s%.*s%s%s%s", *list == '(' && unit ? "above " : "", low, list + 1,
+                       unit ? " to " : "..", high, comma + 2, unit && *unit ? " " : "", unit ? unit : "",
+                       f->kind != FIELD_AUTO ? ""
+                       : unit                ? ", or auto"
+                                             : "|auto");
+    } else if (unit)
+        spell(list, "", "", text, room);
+    else
+        (void)snprintf(text, room, "%s", list);
+}
+
+void fields_values(const field *f, const char *unit, char *text, size_t room) {
+    char list[128];
+    const bool words = f->kind == FIELD_CHOICE || f->kind == FIELD_WORD;
+    if (f->kind == FIELD_SWITCH)
+        (void)snprintf(text, room, "true or false");
+    else if (words || f->kind == FIELD_AMONG) {
+        spell(f->allowed, words ? "`\"" : "", words ? "\"`" : "", list, sizeof list);
+        (void)snprintf(text, room, "%s", list);
+    } else
+        (void)snprintf(text, room, "%s%s%s%s%s", f->kind == FIELD_WHOLE ? "whole, " : "", f->allowed, *unit ? " " : "", unit,
+                       f->kind == FIELD_AUTO ? ", or `\"auto\"`" : "");
 }
 
 bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list) {

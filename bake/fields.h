@@ -5,6 +5,8 @@
 #include "vitrine.h"
 #include <libconfig.h>
 #include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
 
 typedef enum field_kind {
     FIELD_NUMBER,              /* double; an integer will do */
@@ -47,6 +49,13 @@ bool fields_read(const place *at, const config_setting_t *group, const field *fi
 /* The setting as it stands in a group: "name = value; ". Numbers are the shortest that read back the same. Returns the bytes written,
  * fewer than `room`. For all kinds but texts and vectors. */
 size_t fields_write(const field *f, const void *from, char *text, size_t room);
+
+/* Puts the text of an option into the field; a switch is 0 or 1. False: it is not allowed, and nothing is changed. Not for texts and vectors. */
+bool fields_put(const field *f, const char *text, void *out);
+/* What fields_put() takes: "1, 4 or 16", "0 to 1", "1e-12 to 1e6 m, or auto". unit: NULL for the form of a line of help, "1|4|16", "0..1". */
+void fields_wants(const field *f, const char *unit, char *text, size_t room);
+/* What the scene file may say, for a table: "`\"box\"` or `\"tent\"`", "[0, 1]". */
+void fields_values(const field *f, const char *unit, char *text, size_t room);
 
 /* Member `name` of `group` as a list of groups. Absent: *list is NULL. False: it is something else, or longer than `most`. */
 bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list);

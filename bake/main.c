@@ -5,6 +5,7 @@
 #include "cost/fit_pack.h"
 #include "list.h"
 #include "options.h"
+#include "setting_rows.h"
 #include "pipeline.h"
 #include <signal.h>
 #include <stdio.h>
@@ -195,6 +196,10 @@ int main(int argc, char **argv) {
     vit_status status = options_parse(argc, argv, &b.options, &why);
     if (status == VIT_OK && b.options.help) {
         options_help();
+        return VIT_OK;
+    }
+    if (status == VIT_OK && b.options.table) {
+        settings_table(stdout);
         return VIT_OK;
     }
     if (status == VIT_OK && b.options.version) {

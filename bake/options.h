@@ -6,21 +6,17 @@
 
 typedef struct options {
     const char *input, *output;
-    bool explain, strict, quiet, all_formats, no_check, help, version, list, json;
+    bool explain, strict, quiet, all_formats, no_check, help, version, list, json, table;
     unsigned threads;          /* 0: all cores */
     const char *device;        /* as vit_device_find() takes it; NULL: the default */
-    /* Overrides of the scene file; 0, NULL or negative: none. */
-    int width, height, frames, photons, bounces, tile, indirect_samples, vertex_bits, normal_bits, sample_bits, antialias,
-        light_samples, sky_samples, specular_depth;
-    double radius;             /* 0 with radius_given: auto */
-    bool radius_given;
+    /* Overrides of the scene file; 0 or NULL: none. */
+    int width, height, frames;
     double fit;                /* milliseconds a frame, 0: none */
     double fit_work;           /* work units a frame, a whole number, 0: none */
     double exposure;           /* of all frames; 0 with exposure_given: auto */
     bool exposure_given;
-    const char *quality, *estimate, *smoothing, *kernel, *texture_filter, *antialias_filter;
-    int normal_keys, zones, effective_area, guiding, bounce_sequence, caustics; /* -1: as the scene says; zones: 2 with light_zones */
-    double antialias_contrast; /* -1: as the scene says */
+    const char *quality;       /* auto or stated */
+    const char *settings[SETTINGS]; /* values of settings of the quality block, each known to be allowed */
     bool effects_given;
     int effects_choice;        /* as in `scene` */
     uint64_t effects;

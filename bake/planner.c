@@ -132,7 +132,7 @@ static uint64_t effects_of_quality(const scene *s, const plan *p) {
     uint64_t e = VIT_BIT(PHOTONS) | (q->buckets ? VIT_BIT(BUCKETS) : VIT_BIT(LIST));
     e |= p->scene.paths > 0 ? VIT_BIT(TRACED) : 0;
     e |= q->buckets && q->raw ? VIT_BIT(RAW_BUCKETS) : 0;
-    e |= q->flatten > 0 ? VIT_BIT(FLATTENED) : 0;
+    e |= q->flattened ? VIT_BIT(FLATTENED) : 0;
     e |= q->normal_keys ? VIT_BIT(NORMAL_KEYS) : 0;
     e |= q->zones ? VIT_BIT(ZONES) : 0;
     e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_BIT(AREA) : 0;
@@ -264,7 +264,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         out->free_path = r->free_path;
         double slots = (double)s->quality.photons * (s->quality.bounces - 1);
         c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : plan_radius(out, slots));
-        c->flatten = (float)s->quality.flatten;
+        c->flatten = s->quality.flattened ? (float)s->quality.flatten : 0.0f;
     }
     return VIT_OK;
 }

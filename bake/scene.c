@@ -1,6 +1,7 @@
 #include "scene_files.h"
 #include "scene_reader.h"
 #include "scene_text.h"
+#include "setting_rows.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,40 +38,17 @@ static const field sky_fields[] = {
     [SKY_LIGHT] = {"light", FIELD_SWITCH, offsetof(scene_sky, light), NULL},
 };
 
+/* The settings, and beside them whether "auto" chooses the rest. */
 typedef struct quality_group {
     scene_quality q;
-    bool flattened, automatic;
+    bool automatic;
 } quality_group;
 
-enum { QUALITY_AUTOMATIC, QUALITY_FLATTEN };
 static const field quality_fields[] = {
-    [QUALITY_AUTOMATIC] = {"auto", FIELD_SWITCH, offsetof(quality_group, automatic), NULL},
-    [QUALITY_FLATTEN] = {"flatten", FIELD_NUMBER, offsetof(quality_group, q.flatten), "(0, 1e4]"},
-    {"photons", FIELD_WHOLE, offsetof(quality_group, q.photons), "[0, 1000000]"},
-    {"bounces", FIELD_WHOLE, offsetof(quality_group, q.bounces), "[1, 32]"},
-    {"radius", FIELD_AUTO, offsetof(quality_group, q.radius), "[1e-12, 1e6]"},
-    {"tile", FIELD_WHOLE, offsetof(quality_group, q.tile), "[8, 64]"},
-    {"estimate", FIELD_CHOICE, offsetof(quality_group, q.buckets), "list|buckets"},
-    {"smoothing", FIELD_CHOICE, offsetof(quality_group, q.raw), "interpolated|raw"},
-    {"kernel", FIELD_CHOICE, offsetof(quality_group, flattened), "sphere|flattened"},
-    {"normal_keys", FIELD_SWITCH, offsetof(quality_group, q.normal_keys), NULL},
-    {"zones", FIELD_SWITCH, offsetof(quality_group, q.zones), NULL},
-    {"light_zones", FIELD_SWITCH, offsetof(quality_group, q.light_zones), NULL},
-    {"effective_area", FIELD_SWITCH, offsetof(quality_group, q.effective_area), NULL},
-    {"guiding", FIELD_SWITCH, offsetof(quality_group, q.guiding), NULL},
-    {"bounce_sequence", FIELD_SWITCH, offsetof(quality_group, q.bounce_sequence), NULL},
-    {"indirect_samples", FIELD_AMONG, offsetof(quality_group, q.indirect_samples), SCENE_INDIRECT_SAMPLES},
-    {"texture_filter", FIELD_WORD, offsetof(quality_group, q.texture_filter), SCENE_FILTERS},
-    {"vertex_bits", FIELD_AMONG, offsetof(quality_group, q.vertex_bits), SCENE_VERTEX_BITS},
-    {"normal_bits", FIELD_AMONG, offsetof(quality_group, q.normal_bits), SCENE_NORMAL_BITS},
-    {"sample_bits", FIELD_AMONG, offsetof(quality_group, q.sample_bits), SCENE_SAMPLE_BITS},
-    {"antialias", FIELD_AMONG, offsetof(quality_group, q.antialias), SCENE_ANTIALIAS},
-    {"antialias_contrast", FIELD_NUMBER, offsetof(quality_group, q.antialias_contrast), "[0, 1]"},
-    {"antialias_filter", FIELD_CHOICE, offsetof(quality_group, q.tent), "box|tent"},
-    {"light_samples", FIELD_WHOLE, offsetof(quality_group, q.light_samples), "[1, 1024]"},
-    {"sky_samples", FIELD_WHOLE, offsetof(quality_group, q.sky_samples), "[1, 1024]"},
-    {"specular_depth", FIELD_WHOLE, offsetof(quality_group, q.specular_depth), "[1, 32]"},
-    {"caustics", FIELD_SWITCH, offsetof(quality_group, q.caustics), NULL},
+#define SETTING(type, member, word, kind, usual, allowed, ...) {word, kind, offsetof(quality_group, q.member), allowed},
+#include "settings.inc"
+#undef SETTING
+    {"auto", FIELD_SWITCH, offsetof(quality_group, automatic), NULL},
 };
 
 void reader_at(reader *r, const char *group, int index) {
@@ -114,40 +92,23 @@ static bool read_sky(reader *r, const config_setting_t *root) {
     return true;
 }
 
-/* QUALITY_KEPT_* of a setting's name; 0: "auto" does not choose it. */
-static uint32_t kept_bit(const char *name) {
-#define X(bit, word)                                                                                                           \
-    if (strcmp(name, #word) == 0)                                                                                              \
-        return QUALITY_KEPT_##bit;
-    SCENE_QUALITY_AUTO(X)
-#undef X
-    return 0;
-}
-
 /* Puts the group's settings over *q. *automatic and *kept: as in `scene`; may be NULL. */
 static bool merge_quality(const place *at, const config_setting_t *group, scene_quality *q, bool *automatic, uint32_t *kept) {
-    quality_group g = {.q = *q, .flattened = q->flatten > 0};
+    quality_group g = {.q = *q};
+    vit_text fault;
     uint32_t seen = 0;
     if (!fields_read(at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
         return false;
     if (g.automatic && !automatic)
         return fields_fail(at, group, "'auto' is not for here");
-    for (int i = 0; i < FIELD_COUNT(quality_fields) && kept; i++)
-        *kept |= seen & FIELD_BIT(i) ? kept_bit(quality_fields[i].name) : 0;
+    if ((seen & SETTING_BIT(flatten)) && !g.q.flattened)
+        return fields_fail(at, group, "'flatten' needs kernel \"flattened\"");
+    if (!settings_agree(&g.q, &fault))
+        return fields_fail(at, group, "%s", fault.text);
+    if (kept)
+        *kept |= seen & (((uint32_t)1 << SETTINGS) - 1);
     if (automatic)
         *automatic = g.automatic;
-    if (g.q.tile & (g.q.tile - 1))
-        return fields_fail(at, group, "'tile' must be 8, 16, 32 or 64, got %d", g.q.tile);
-    if (g.q.raw && !g.q.buckets)
-        return fields_fail(at, group, "smoothing \"raw\" needs estimate \"buckets\"");
-    if ((seen & FIELD_BIT(QUALITY_FLATTEN)) && !g.flattened)
-        return fields_fail(at, group, "'flatten' needs kernel \"flattened\"");
-    if (g.q.light_zones && !g.q.zones)
-        return fields_fail(at, group, "'light_zones' needs zones = true");
-    if (!g.flattened)
-        g.q.flatten = 0;
-    else if (!(g.q.flatten > 0))
-        g.q.flatten = 15.0;
     *q = g.q;
     return true;
 }
@@ -177,39 +138,22 @@ vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why
 }
 
 void scene_quality_text(const scene_quality *q, char *text, size_t room) {
-    const quality_group g = {.q = *q, .flattened = q->flatten > 0};
     size_t used = 0;
     text[0] = '\0';
-    for (int i = 0; i < FIELD_COUNT(quality_fields); i++)
-        if (i != QUALITY_AUTOMATIC && (i != QUALITY_FLATTEN || g.flattened))
-            used += fields_write(&quality_fields[i], &g, text + used, room - used);
+    for (int i = 0; i < SETTINGS; i++)
+        if (i != SETTING_AT_flatten || q->flattened)
+            used += fields_write(&setting_rows[i].field, q, text + used, room - used);
 }
 
-static const scene_quality default_quality = {.photons = 17000,
-                                              .bounces = 4,
-                                              .tile = 32,
-                                              .indirect_samples = 16,
-                                              .texture_filter = FILTER_BILINEAR,
-                                              .vertex_bits = 32,
-                                              .normal_bits = 16,
-                                              .sample_bits = 32,
-                                              .antialias = 1,
-                                              .antialias_contrast = 0.06,
-                                              .light_samples = 16,
-                                              .sky_samples = 8,
-                                              .specular_depth = 8,
-                                              .caustics = true};
-
 void scene_quality_difference(const scene_quality *q, char *text, size_t room) {
-    const quality_group g = {.q = *q}, plain = {.q = default_quality};
     size_t used = 0;
     text[0] = '\0';
-    for (int i = 0; i < FIELD_COUNT(quality_fields); i++) {
+    for (int i = 0; i < SETTINGS; i++) {
         char usual[64];
-        if (!kept_bit(quality_fields[i].name))
+        if (!(setting_rows[i].marks & SETTING_CHOSEN))
             continue;
-        const size_t written = fields_write(&quality_fields[i], &g, text + used, room - used);
-        (void)fields_write(&quality_fields[i], &plain, usual, sizeof usual);
+        const size_t written = fields_write(&setting_rows[i].field, q, text + used, room - used);
+        (void)fields_write(&setting_rows[i].field, &settings_default, usual, sizeof usual);
         used += strcmp(text + used, usual) != 0 ? written : 0;
         text[used] = '\0';
     }
@@ -256,7 +200,7 @@ static bool read_top(reader *r, const config_setting_t *root) {
 
 static void set_defaults(scene *s) {
     *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .exposure_factor = 1.0, .check = true, .sky = {.scale = 1.0}};
-    s->quality = default_quality;
+    s->quality = settings_default;
     s->quality_auto = true;
 }
 

@@ -3,6 +3,7 @@
 #define VIT_BAKE_SCENE_H
 
 #include "inputs.h"
+#include "settings.h"
 #include "vitrine.h"
 #include <stdbool.h>
 
@@ -71,56 +72,6 @@ typedef struct scene_sky {
     bool light;                /* the sky lights the scene */
 } scene_sky;
 
-/* Values of settings that take one of a few. */
-#define SCENE_INDIRECT_SAMPLES "1|4|16"
-#define SCENE_VERTEX_BITS "32|16"
-#define SCENE_NORMAL_BITS "16|8"
-#define SCENE_SAMPLE_BITS "32|16"
-#define SCENE_FILTERS "nearest|bilinear|trilinear"
-#define SCENE_ANTIALIAS "1|2|4|8|16"
-enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
-
-typedef struct scene_quality {
-    int photons;               /* emitted paths; 0: no indirect light */
-    int bounces;               /* 1..32 */
-    double radius;             /* metres; 0: auto */
-    int tile;                  /* 8, 16, 32, 64 */
-    bool buckets;              /* estimate: list (false) or buckets */
-    bool raw;                  /* buckets without interpolation, 54 directions: as published */
-    double flatten;            /* kernel = "flattened": 15 unless given; 0: sphere */
-    bool normal_keys;
-    bool zones;                /* photons count only for surfaces that see where they landed, by 32 baked zones */
-    bool light_zones;          /* zones also part surfaces that are lit unlike; needs zones */
-    bool guiding;              /* photon paths of still lights go where they light what is seen (guides.h) */
-    bool effective_area;       /* estimates are divided by the part of the kernel that lies on surfaces */
-    bool bounce_sequence;      /* reflections follow a low-discrepancy sequence */
-    int indirect_samples;      /* 1, 4 or 16: indirect light is estimated at one view sample of so many */
-    int texture_filter;        /* FILTER_* */
-    int vertex_bits;           /* 32, or 16: positions on a grid of the scene's box (quantise.h) */
-    int normal_bits;           /* 16, or 8: of each octahedral component of a vertex normal */
-    int sample_bits;           /* 32 or 16: of each coordinate of a view sample's position */
-    int antialias;             /* samples a pixel: 1, 2, 4, 8 or 16 */
-    double antialias_contrast; /* 0..1; 0: all pixels take all of them */
-    bool tent;                 /* antialias_filter: box (false) or tent */
-    int light_samples;         /* points on area lights that a view sample looks at, 1..1024 */
-    int sky_samples;           /* directions to the sky, likewise */
-    int specular_depth;        /* reflections and refractions of a view ray, 1..32 */
-    bool caustics;             /* photon paths go on from mirrors and glass */
-} scene_quality;
-
-/* Settings that quality "auto" chooses, unless the block or an option states them: X(name, word). */
-#define SCENE_QUALITY_AUTO(X)                                                                                                  \
-    X(PHOTONS, photons) X(BOUNCES, bounces) X(RADIUS, radius) X(ZONES, zones) X(LIGHT_ZONES, light_zones)                      \
-    X(AREA, effective_area) X(GUIDING, guiding) X(LIGHT_SAMPLES, light_samples) X(SKY_SAMPLES, sky_samples)
-enum {
-#define X(name, word) QUALITY_AT_##name,
-    SCENE_QUALITY_AUTO(X)
-#undef X
-#define X(name, word) QUALITY_KEPT_##name = 1 << QUALITY_AT_##name,
-    SCENE_QUALITY_AUTO(X)
-#undef X
-};
-
 /* What `effects` of a scene file says. */
 enum { EFFECTS_AUTO, EFFECTS_ALL, EFFECTS_LISTED };
 #define SCENE_EFFECTS "auto|all" /* in this order */
@@ -150,7 +101,7 @@ typedef struct scene {
     int material_count;
     scene_quality quality;
     bool quality_auto;         /* the baker chooses what is not stated (auto.h) */
-    uint32_t quality_kept;     /* QUALITY_KEPT_*: what is stated */
+    uint32_t quality_kept;     /* SETTING_BIT()s: what is stated */
     int effects_choice;        /* EFFECTS_* */
     uint64_t effects;          /* EFFECTS_LISTED: VIT_BIT() of those named */
     inputs files;              /* the scene file, what it includes, and the files that it names */

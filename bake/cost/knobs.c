@@ -1,114 +1,49 @@
-/* The one table of knobs, and what its rows can be set to. */
+/* What can be turned, and what it can be set to for the scene at hand. */
 #include "knob_parts.h"
 #include "planner.h"
+#include "setting_rows.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define SPECULAR (VIT_BIT(MIRROR) | VIT_BIT(GLASS))
-
-const knob knob_table[] = {
-    {"photons", "photon paths a frame: 1/4 to 4 times the scene's", true, KNOB_PHOTONS, .numbers = {0.25, 2.0, 0.5, 4.0}},
-    {"radius", "photon radius, metres: 0.35 to 2 times the scene's, and \"auto\"", true, KNOB_RADIUS,
-     .values = {{"auto", "radius = \"auto\""}}, .numbers = {0.5, 1.4, 0.7, 2.0, 0.35}},
-    {"estimate", "each photon of a cluster (list), or buckets, interpolated or raw", true, KNOB_TEXTS,
-     .values = {{"list", "estimate = \"list\"; smoothing = \"interpolated\""},
-                {"buckets", "estimate = \"buckets\"; smoothing = \"interpolated\""},
-                {"raw buckets", "estimate = \"buckets\"; smoothing = \"raw\""}}},
-    {"kernel", "sphere, or flattened along the normal", true, KNOB_TEXTS,
-     .values = {{"flattened", "kernel = \"flattened\""}, {"sphere", "kernel = \"sphere\""}}},
-    {"zones", "baked zones of photons: by sight, by sight and light, off", true, KNOB_TEXTS,
-     .values = {{"sight and light", "zones = true; light_zones = true"},
-                {"sight", "zones = true; light_zones = false"},
-                {"off", "zones = false; light_zones = false"}}},
-    {"effective_area", "whether sums are divided by the kernel's baked area", true, KNOB_TEXTS,
-     .values = {{"on", "effective_area = true"}, {"off", "effective_area = false"}}},
-    {"bounce_sequence", "whether reflections follow a low-discrepancy sequence", false, KNOB_TEXTS,
-     .values = {{"on", "bounce_sequence = true"}, {"off", "bounce_sequence = false"}}},
-    {"indirect_samples", "indirect light at one view sample of so many, interpolated between them", true, KNOB_TEXTS,
-     .values = {{"4", "indirect_samples = 4"}, {"16", "indirect_samples = 16"}, {"1", "indirect_samples = 1"}}},
-    {"bounces", "hits of a photon path", false, KNOB_TEXTS,
-     .values = {{"2", "bounces = 2"},
-                {"3", "bounces = 3"},
-                {"6", "bounces = 6"},
-                {"4", "bounces = 4"},
-                {"5", "bounces = 5"},
-                {"8", "bounces = 8"}}},
-    {"tile", "tile edge, pixels", false, KNOB_TEXTS,
-     .values = {{"16", "tile = 16"}, {"64", "tile = 64"}, {"8", "tile = 8"}, {"32", "tile = 32"}}},
-    {"normal_keys", "whether cluster keys hold the normal", false, KNOB_TEXTS,
-     .values = {{"on", "normal_keys = true"}, {"off", "normal_keys = false"}}},
-    {"texture_filter", "how textures are read", false, KNOB_TEXTS,
-     .values = {{"nearest", "texture_filter = \"nearest\""},
-                {"trilinear", "texture_filter = \"trilinear\""},
-                {"bilinear", "texture_filter = \"bilinear\""}},
-     .needs = VIT_BIT(TEXTURES)},
-    {"antialias", "samples a pixel", true, KNOB_TEXTS,
-     .values = {{"1", "antialias = 1"},
-                {"4", "antialias = 4"},
-                {"2", "antialias = 2"},
-                {"8", "antialias = 8"},
-                {"16", "antialias = 16"}},
-     .needs = VIT_BIT(ANTIALIAS)},
-    {"antialias_contrast", "how much a pixel must differ from a neighbour to take all its samples; 0: all do", true, KNOB_TEXTS,
-     .values = {{"0", "antialias_contrast = 0.0"},
-                {"0.12", "antialias_contrast = 0.12"},
-                {"0.03", "antialias_contrast = 0.03"},
-                {"0.25", "antialias_contrast = 0.25"},
-                {"0.06", "antialias_contrast = 0.06"}},
-     .needs = VIT_BIT(ANTIALIAS)},
-    {"light_samples", "points on area lights that a view sample looks at", true, KNOB_TEXTS,
-     .values = {{"4", "light_samples = 4"},
-                {"64", "light_samples = 64"},
-                {"8", "light_samples = 8"},
-                {"32", "light_samples = 32"},
-                {"1", "light_samples = 1"},
-                {"16", "light_samples = 16"}},
-     .needs = VIT_BIT(AREA_LIGHTS)},
-    {"sky_samples", "directions to the sky that a view sample looks in", true, KNOB_TEXTS,
-     .values = {{"4", "sky_samples = 4"},
-                {"64", "sky_samples = 64"},
-                {"8", "sky_samples = 8"},
-                {"32", "sky_samples = 32"},
-                {"1", "sky_samples = 1"},
-                {"16", "sky_samples = 16"}},
-     .needs = VIT_BIT(SKY_LIGHT)},
-    {"specular_depth", "reflections and refractions of a view ray", false, KNOB_TEXTS,
-     .values = {{"2", "specular_depth = 2"},
-                {"4", "specular_depth = 4"},
-                {"16", "specular_depth = 16"},
-                {"1", "specular_depth = 1"},
-                {"8", "specular_depth = 8"}},
-     .needs = SPECULAR},
-    {"caustics", "whether photons go on from mirrors and glass", false, KNOB_TEXTS,
-     .values = {{"on", "caustics = true"}, {"off", "caustics = false"}}, .needs = SPECULAR},
-    {"vertex_bits", "bits of each coordinate of a vertex", false, KNOB_TEXTS,
-     .values = {{"16", "vertex_bits = 16"}, {"32", "vertex_bits = 32"}}},
-    {"normal_bits", "bits of each of the two components of a vertex normal", false, KNOB_TEXTS,
-     .values = {{"8", "normal_bits = 8"}, {"16", "normal_bits = 16"}}},
-    {"sample_bits", "bits of each coordinate of a view sample", false, KNOB_TEXTS,
-     .values = {{"16", "sample_bits = 16"}, {"32", "sample_bits = 32"}}},
-    {"size", "output size, shown as large as the scene's", false, KNOB_SIZE, .numbers = {0.5, 0.75}},
-    {"lanes", "samples a work-item: the same bits, another time", false, KNOB_LANES, .numbers = {1, 8, 16}},
+/* The knobs beyond the quality block. */
+static const struct {
+    const char *name, *what, *tried;
+} own[] = {
+    [KNOB_SIZE - SETTINGS] = {"size", "output size, shown as large as the scene's", "x0.5 | x0.75"},
+    [KNOB_LANES - SETTINGS] = {"lanes", "samples a work-item: the same bits, another time", "1 | 8 | 16"},
 };
-enum { KNOBS = sizeof knob_table / sizeof knob_table[0] };
-_Static_assert(KNOBS <= KNOBS_MOST, "raise KNOBS_MOST");
-const int knob_count = KNOBS;
+
+static const char *knob_tried(int k) {
+    return k < SETTINGS ? setting_rows[k].tried : own[k - SETTINGS].tried;
+}
+
+const char *knob_name(int k) {
+    return k >= SETTINGS ? own[k - SETTINGS].name : setting_rows[k].tried ? setting_rows[k].field.name : NULL;
+}
+
+bool knob_combined(int k) {
+    return k < SETTINGS && setting_rows[k].tried && (setting_rows[k].marks & SETTING_TOGETHER);
+}
 
 static vit_status usage(vit_text *why, const char *name, int length) {
     int used = snprintf(why->text, sizeof why->text, "--knobs: there is no knob '%.*s', only", length > 60 ? 60 : length, name);
-    for (int k = 0; k < KNOBS && used > 0 && (size_t)used < sizeof why->text; k++)
-        used += snprintf(why->text + used, sizeof why->text - (size_t)used, "%s %s", k ? "," : "", knob_table[k].name);
+    for (int k = 0, first = 1; k < KNOBS && used > 0 && (size_t)used < sizeof why->text; k++)
+        if (knob_name(k)) {
+            used += snprintf(why->text + used, sizeof why->text - (size_t)used, "%s %s", first ? "" : ",", knob_name(k));
+            first = 0;
+        }
     return VIT_USAGE;
 }
 
 static vit_status select_knobs(const char *only, bool on[KNOBS], vit_text *why) {
     for (int k = 0; k < KNOBS; k++)
-        on[k] = !only;
+        on[k] = !only && knob_name(k);
     while (only && *only) {
         const size_t length = strcspn(only, ",");
         int k = 0;
-        while (k < KNOBS && (strlen(knob_table[k].name) != length || strncmp(knob_table[k].name, only, length) != 0))
+        while (k < KNOBS && (!knob_name(k) || strlen(knob_name(k)) != length || strncmp(knob_name(k), only, length) != 0))
             k++;
         if (k == KNOBS)
             return usage(why, only, (int)length);
@@ -129,7 +64,8 @@ bool knobs_in_quality(const knob_setting *s) {
 
 void knobs_help(void) {
     for (int k = 0; k < KNOBS; k++)
-        printf("  %-18s %s\n", knob_table[k].name, knob_table[k].what);
+        if (knob_name(k))
+            printf("  %-18s %s\n", knob_name(k), k < SETTINGS ? setting_rows[k].help : own[k - SETTINGS].what);
 }
 
 /* As scene_quality_text(), without what has no effect. */
@@ -149,59 +85,95 @@ bool knob_same(const knob_setting *a, const knob_setting *b) {
     return a->scale == b->scale && a->lanes == b->lanes && strcmp(text_a, text_b) == 0;
 }
 
-/* Adds a value unless it is the default's or there already. */
-static vit_status try_value(const knob_setting *base, const knob *k, const char *label, const char *text, double number,
-                            knob_values *t, vit_text *why) {
-    knob_setting *s = &t->set[t->count];
-    *s = *base;
-    s->scale = k->kind == KNOB_SIZE ? number : base->scale;
-    s->lanes = k->kind == KNOB_LANES ? (uint32_t)number : base->lanes;
-    if (text[0] && scene_quality_apply(text, &s->quality, why) != VIT_OK)
-        return VIT_BAD_INPUT;
+/* Adds *s unless it is the default or there already. text: what it changes in the quality block. */
+static void add_value(const knob_setting *base, const knob_setting *s, const char *label, const char *text, knob_values *t) {
     for (int i = 0; i < t->count; i++)
         if (knob_same(s, &t->set[i]))
-            return VIT_OK;
+            return;
     if (knob_same(s, base))
-        return VIT_OK;
+        return;
+    t->set[t->count] = *s;
     (void)snprintf(t->label[t->count], sizeof t->label[0], "%s", label);
     (void)snprintf(t->text[t->count], sizeof t->text[0], "%s", text);
     t->count++;
+}
+
+/* The value "x0.5" of what the scene has, as an option would have it: whole paths, three digits of a radius. False: it has
+ * none. */
+static bool multiple(const knobs_input *in, int k, const char *value, char *out, size_t room) {
+    const double factor = strtod(value + 1, NULL);
+    if (k == SETTING_AT_photons)
+        (void)snprintf(out, room, "%.0f", fmin(round(in->base->photons * factor), 1000000));
+    else if (k == SETTING_AT_radius)
+        (void)snprintf(out, room, "%.3g", in->radius * factor);
+    else
+        return false;
+    return strtod(out, NULL) > 0;
+}
+
+/* One word of a value, put into *s and written behind *used bytes of text. */
+static bool put_word(const setting_row *row, const char *value, knob_setting *s, char *text, size_t room, size_t *used) {
+    if (!settings_put(row, value, &s->quality))
+        return false;
+    *used += fields_write(&row->field, &s->quality, text + *used, room - *used);
+    return true;
+}
+
+/* A value of `tried`: "[label: ]value[, word value]..." */
+static vit_status try_value(const knobs_input *in, const knob_setting *base, int k, char *value, knob_values *t,
+                            vit_text *why) {
+    knob_setting s = *base;
+    char number[COST_NAME], text[COST_NAME] = "", *colon = strstr(value, ": ");
+    const char *label = value;
+    size_t used = 0;
+    if (colon) {
+        *colon = '\0';
+        value = colon + 2;
+    }
+    if (k == KNOB_SIZE || k == KNOB_LANES) {
+        const double of = strtod(value + (*value == 'x'), NULL);
+        s.scale = k == KNOB_SIZE ? of : s.scale;
+        s.lanes = k == KNOB_LANES ? (uint32_t)of : s.lanes;
+        add_value(base, &s, value + (*value == 'x'), text, t);
+        return VIT_OK;
+    }
+    if (*value == 'x') {
+        if (!multiple(in, k, value, number, sizeof number))
+            return VIT_OK;
+        label = value = number;
+    }
+    char *rest, *word = strtok_r(value, ",", &rest);
+    bool fine = put_word(&setting_rows[k], word, &s, text, sizeof text, &used);
+    if (!colon && setting_rows[k].field.kind == FIELD_SWITCH)
+        label = strcmp(word, "0") ? "on" : "off";
+    while (fine && (word = strtok_r(NULL, ",", &rest)) != NULL) {
+        word += strspn(word, " ");
+        const size_t length = strcspn(word, " ");
+        const setting_row *other = settings_named(word, length);
+        fine = other && put_word(other, word + length + 1, &s, text, sizeof text, &used);
+    }
+    if (!fine) {
+        (void)snprintf(why->text, sizeof why->text, "values to try of '%s': '%.60s'", knob_name(k), word);
+        return VIT_FAILED;
+    }
+    add_value(base, &s, label, text, t);
     return VIT_OK;
 }
 
-/* A number of the row as label and text; false: the scene has nothing that it could be a multiple of. */
-static bool number_value(const knobs_input *in, const knob *k, double number, char *label, char *text, size_t room) {
-    text[0] = '\0';
-    switch (k->kind) {
-    case KNOB_PHOTONS:
-        number = fmin(round(in->base->photons * number), 1000000);
-        (void)snprintf(text, room, "photons = %.0f", number);
-        break;
-    case KNOB_RADIUS:
-        number *= in->radius;
-        (void)snprintf(text, room, "radius = %.3g", number);
-        break;
-    case KNOB_SIZE:
-    case KNOB_LANES:
-    case KNOB_TEXTS:
-        break;
-    }
-    (void)snprintf(label, room, k->kind == KNOB_RADIUS ? "%.3g" : "%.6g", number);
-    return number > 0;
-}
-
-static vit_status try_values(const knobs_input *in, const knob_setting *base, const knob *k, knob_values *t, vit_text *why) {
+static vit_status try_values(const knobs_input *in, const knob_setting *base, int k, knob_values *t, vit_text *why) {
     vit_status status = VIT_OK;
     t->count = 0;
-    if ((k->needs && !(k->needs & in->effects)) || (in->in_quality && (k->kind == KNOB_SIZE || k->kind == KNOB_LANES)))
+    if (k < SETTINGS ? setting_rows[k].needs && !(setting_rows[k].needs & in->effects) : in->in_quality)
         return VIT_OK;
-    for (int i = 0; i < MOST_VALUES && k->numbers[i] > 0 && status == VIT_OK; i++) {
-        char label[COST_NAME], text[COST_NAME];
-        if (number_value(in, k, k->numbers[i], label, text, sizeof label))
-            status = try_value(base, k, label, text, k->numbers[i], t, why);
+    char values[256];
+    (void)snprintf(values, sizeof values, "%s", knob_tried(k));
+    for (char *at = values; at && status == VIT_OK && t->count < MOST_TRIED;) {
+        char *bar = strstr(at, " | ");
+        if (bar)
+            *bar = '\0';
+        status = try_value(in, base, k, at, t, why);
+        at = bar ? bar + 3 : NULL;
     }
-    for (int i = 0; i < MOST_VALUES && k->values[i].text && status == VIT_OK; i++)
-        status = try_value(base, k, k->values[i].label, k->values[i].text, 0, t, why);
     return status;
 }
 
@@ -210,6 +182,6 @@ vit_status knob_find_values(const knobs_input *in, const knob_setting *base, kno
     vit_status status = select_knobs(in->only, on, why);
     for (int k = 0; k < KNOBS && status == VIT_OK; k++)
         if (on[k])
-            status = try_values(in, base, &knob_table[k], &values[k], why);
+            status = try_values(in, base, k, &values[k], why);
     return status;
 }

@@ -1,5 +1,5 @@
-/* knobs.c: the one table of what a sweep turns; knob_list.c: the settings made from it. A new knob is a row of the table beside
- * its field in the quality block.
+/* knobs.c: what a sweep turns; knob_list.c: the settings made from it. A setting of the quality block is a knob if its row of
+ * settings.inc has values to try.
  *
  * There is no knob for a fixed-point scale: irradiance is summed by each view sample in floats and in a fixed order, so that no
  * sum across work-items, and no scale, exists. */

@@ -75,8 +75,8 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses("scene.cfg --frames 0" OUT, VIT_USAGE, "--frames");
     bake_refuses("scene.cfg --photons -1" OUT, VIT_USAGE, "--photons");
     bake_refuses("scene.cfg --bounces 33" OUT, VIT_USAGE, "1 to 32");
-    bake_refuses("scene.cfg --radius -2" OUT, VIT_USAGE, "metres, or auto");
-    bake_refuses("scene.cfg --radius nan" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --radius -2" OUT, VIT_USAGE, " m, or auto");
+    bake_refuses("scene.cfg --radius nan" OUT, VIT_USAGE, " m, or auto");
     bake_refuses("scene.cfg --estimate guess" OUT, VIT_USAGE, "list or buckets");
     bake_refuses("scene.cfg --threads many" OUT, VIT_USAGE, "--threads");
     bake_refuses("scene.cfg --frames 4294967298" OUT, VIT_USAGE, "--frames"); /* 2^32 + 2 */
@@ -87,8 +87,8 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses("scene.cfg --frames=" OUT, VIT_USAGE, "--frames");
     bake_refuses("scene.cfg --frames --quiet" OUT, VIT_USAGE, "--frames");
     bake_refuses("scene.cfg --quiet=1" OUT, VIT_USAGE, "takes no value");
-    bake_refuses("scene.cfg --radius 0x1p3" OUT, VIT_USAGE, "metres, or auto");
-    bake_refuses("scene.cfg --radius 0.5m" OUT, VIT_USAGE, "metres, or auto");
+    bake_refuses("scene.cfg --radius 0x1p3" OUT, VIT_USAGE, " m, or auto");
+    bake_refuses("scene.cfg --radius 0.5m" OUT, VIT_USAGE, " m, or auto");
     bake_refuses("scene.cfg --size=80x45x3" OUT, VIT_USAGE, "WIDTHxHEIGHT");
     bake_refuses("scene.cfg --size=80x4294967341" OUT, VIT_USAGE, "WIDTHxHEIGHT"); /* 2^32 + 45 */
     bake_refuses("scene.cfg -o --explain", VIT_USAGE, "-o");

@@ -96,7 +96,7 @@ static void every_setting_of_output_and_quality_is_read(void **state) {
     assert_true(s.width == 640 && s.height == 360 && s.frames == 7 && s.fps == 30.0);
     near3(s.background, 0.1, 0.2, 0.3);
     assert_true(s.quality.photons == 1000 && s.quality.bounces == 7 && s.quality.radius == 0.5 && s.quality.tile == 16);
-    assert_true(s.quality.buckets && s.quality.raw && s.quality.flatten == 9.0 && s.quality.normal_keys);
+    assert_true(s.quality.buckets && s.quality.raw && s.quality.flattened && s.quality.flatten == 9.0 && s.quality.normal_keys);
     assert_true(s.quality.indirect_samples == 4 && s.quality.texture_filter == FILTER_TRILINEAR);
     assert_true(s.quality.vertex_bits == 16 && s.quality.normal_bits == 8 && s.quality.sample_bits == 16);
     assert_false(s.automatic);
@@ -186,7 +186,7 @@ static void what_is_left_out_has_its_default(void **state) {
     near3(s.camera[0].up, 0, 1, 0);
     assert_true(s.lights[0].inner == 0.0 && s.lights[0].outer == 45.0 && s.lights[0].photons && !s.lights[0].window);
     assert_true(s.quality.photons == 17000 && s.quality.bounces == 4 && s.quality.radius == 0.0 && s.quality.tile == 32);
-    assert_true(!s.quality.buckets && !s.quality.raw && s.quality.flatten == 0.0 && !s.quality.normal_keys);
+    assert_true(!s.quality.buckets && !s.quality.raw && !s.quality.flattened && !s.quality.normal_keys);
     assert_true(s.quality.indirect_samples == 16 && s.quality.texture_filter == FILTER_BILINEAR);
     assert_true(s.quality.vertex_bits == 32 && s.quality.normal_bits == 16 && s.quality.sample_bits == 32);
     scene_free(&s);
