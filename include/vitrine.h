@@ -64,8 +64,12 @@ typedef struct vit_open_info {
     uint32_t group;            /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
     vit_format format;
     vit_view view;
-    void *framebuffer;         /* optional: vit_requirements.frame_bytes, 64-byte aligned, alive until vit_close(). Where the device shares
-                                * the host's memory, frames are rendered into it in place: give vit_frame() the same pointer */
+    void *framebuffer;         /* optional: the caller's memory for frames (a mapped /dev/fb0, a window, a file), aligned to 64 bytes, alive until
+                                * vit_close(). Where the device shares the host's memory, frames are rendered into it in place: give
+                                * vit_frame() the same pointer and pitch. vit_open() may leave a frame there, too; bytes between rows are never
+                                * touched */
+    size_t framebuffer_pitch;  /* bytes from one row of it to the next: whole pixels; 0: tightly packed */
+    size_t framebuffer_size;   /* its bytes, (height - 1) * pitch + a row at least; 0: that many */
     uint32_t profile;          /* 1: time each pass (vit_statistics.pass_ms) */
     uint32_t count_work;       /* 1: count each pass's work (vit_statistics.pass_work); frames are slower and have the same bits */
     uint32_t record_reach;     /* 1: record what the rays of each frame reach (vit_reached); the same bits (baker) */
@@ -143,8 +147,8 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
  * of range, also of what the device can do (group). */
 vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why);
 
-/* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it. Without a copy if it is
- * vit_open_info.framebuffer, tightly packed. A NULL framebuffer renders without the transfer. */
+/* Renders frame `index` (0 .. frames - 1) into `framebuffer`, rows `stride` bytes apart, and waits for it. Without a copy if these are
+ * vit_open_info's framebuffer and its pitch. A NULL framebuffer renders without the transfer. */
 vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why);
 
 /* Golden hash of frame `index` in the format that `v` was opened with, to compare with vit_hash_frame(); 0 if the pack holds none. */

@@ -51,10 +51,10 @@ static inline void write_words(const int *at, const int *in, li inside, lv3 c, g
 }
 
 /* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
-static inline void write_pixels(global const vit_scene *scene, li x, li y, li inside, lv3 c, global uchar *framebuffer)
+static inline void write_pixels(uint pitch, li x, li y, li inside, lv3 c, global uchar *framebuffer)
 {
     int at[VIT_LANES], in[VIT_LANES];
-    L_STORE(y * (int)scene->width + x, at);
+    L_STORE(y * (int)pitch + x, at);
     L_STORE(inside, in);
     switch ((vit_format)VIT_FORMAT) {
     case VIT_FORMAT_XRGB8888:
@@ -162,7 +162,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
                     global const uint *hit_triangle, global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
                     uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
                     global const uint *list_count, global const uint *dots, global const vit_photon *photons, global const uint *gloss,
-                    global const float *rays, global const float *film, global const uint *edges, global uchar *framebuffer)
+                    global const float *rays, global const float *film, global const uint *edges, uint pitch, global uchar *framebuffer)
 {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -223,7 +223,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));
     if (VIT_EFFECT_DOTS)
         c = over_dots(scene, x, y, inside, c, dots, photons);
-    write_pixels(scene, x, y, inside, c, framebuffer);
+    write_pixels(pitch, x, y, inside, c, framebuffer);
 }
 
 #if VIT_WITH(DOTS)

@@ -55,7 +55,8 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
         char lanes[32] = "";
         if (l->lanes > 0)
             snprintf(lanes, sizeof lanes, " with %u lanes", l->lanes);
-        snprintf(why->text, sizeof why->text, "device host: no kernels for '%.60s'%s here; there are: ", info->host_isa ? info->host_isa : "this machine",
+        snprintf(why->text, sizeof why->text,
+                 "device host: no kernels for '%.60s'%s here; there are: ", info->host_isa ? info->host_isa : "this machine",
                  lanes);
         list_isas(why);
         return VIT_USAGE;
@@ -83,7 +84,8 @@ static void place_buffers(host_device *d, const vit_device_setup *setup) {
             at += round_up(bytes);
         } else
             d->call.buffers[b] = framebuffer;
-        if (section == VIT_SECTION_NONE)
+        if (section == VIT_SECTION_NONE &&
+            b != B_framebuffer) /* each frame writes all pixels, and what lies between rows is not ours */
             memset(d->call.buffers[b], 0, bytes);
     }
 }
@@ -99,6 +101,7 @@ static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
                           .max_nodes = l->max_nodes,
                           .max_list = l->max_list,
                           .layers = l->layers,
+                          .pitch = l->pitch,
                           .effects = l->effects,
                           .view = l->view,
                           .format = l->format};
@@ -164,12 +167,12 @@ static vit_status read_buffer(void *state, vit_buffer b, size_t bytes, void *out
 static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
     const host_device *d = state;
     const char *from = d->call.buffers[B_framebuffer];
-    size_t row = (size_t)d->scene->width * vit_format_bytes(d->limits->format);
+    const size_t row = vit_row_bytes(d->scene, d->limits), pitch = vit_pitch_bytes(d->limits);
     (void)why;
-    if (!framebuffer || (framebuffer == from && stride == row))
+    if (!framebuffer || (framebuffer == from && stride == pitch))
         return VIT_OK;
     for (size_t y = 0; y < d->scene->height; y++)
-        memmove((char *)framebuffer + y * stride, from + y * row, row);
+        memmove((char *)framebuffer + y * stride, from + y * pitch, row);
     return VIT_OK;
 }
 

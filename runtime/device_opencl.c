@@ -203,12 +203,12 @@ static vit_status clear(void *state, vit_buffer b, vit_text *why) {
     static const uint32_t zero = 0;
     vit_opencl *d = state;
     uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
-    size_t pattern = bytes % 4 == 0 ? 4 : 2; /* RGB565 frames of odd size */
-    cl_int e = clEnqueueFillBuffer(d->queue, d->buffers[b], &zero, pattern, 0, (size_t)bytes, 0, NULL, NULL);
+    cl_int e = clEnqueueFillBuffer(d->queue, d->buffers[b], &zero, sizeof zero, 0, (size_t)bytes, 0, NULL, NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueFillBuffer", e);
 }
 
-/* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat. */
+/* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat, but for the
+ * framebuffer: each frame writes all pixels, and what lies between the rows of the caller's is not ours. */
 static vit_status make_buffer(vit_opencl *d, uint32_t b, void *framebuffer, vit_text *why) {
     uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
     vit_section section = vit_buffer_sections[b];
@@ -224,7 +224,7 @@ static vit_status make_buffer(vit_opencl *d, uint32_t b, void *framebuffer, vit_
     d->buffers[b] = clCreateBuffer(d->context, CL_MEM_READ_WRITE | (host ? CL_MEM_USE_HOST_PTR : 0), (size_t)bytes, host, &e);
     if (e != CL_SUCCESS)
         return failed(why, vit_buffer_names[b], e);
-    return clear(d, (vit_buffer)b, why);
+    return b == B_framebuffer ? VIT_OK : clear(d, (vit_buffer)b, why);
 }
 
 static vit_status upload_baked_photons(vit_opencl *d, vit_text *why) {
@@ -247,7 +247,7 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
             if (a == B_work && !vit_buffer_called(a, l))
                 break;
             uint32_t value = a == V_run ? l->run : a == V_layers ? l->layers : a == V_max_nodes ? l->max_nodes : a == V_max_list ? l->max_list : 0;
-            value = a == V_pass ? p : value;
+            value = a == V_pass ? p : a == V_pitch ? l->pitch : value;
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
             if (e != CL_SUCCESS)
@@ -338,7 +338,7 @@ static vit_status rewind_buffers(void *state, vit_text *why) {
     vit_opencl *d = state;
     vit_status status = VIT_OK;
     for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
-        if (d->buffers[b] && vit_buffer_sections[b] == VIT_SECTION_NONE)
+        if (d->buffers[b] && vit_buffer_sections[b] == VIT_SECTION_NONE && b != B_framebuffer)
             status = clear(d, (vit_buffer)b, why);
     return status == VIT_OK ? upload_baked_photons(d, why) : status;
 }
@@ -402,16 +402,17 @@ static cl_int show_in_place(vit_opencl *d, size_t bytes) {
 static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
     vit_opencl *d = state;
     const vit_scene *s = d->scene;
-    size_t row = (size_t)s->width * vit_format_bytes(d->limits->format), zero[3] = {0, 0, 0}, region[3] = {row, s->height, 1};
+    const size_t row = vit_row_bytes(s, d->limits), pitch = vit_pitch_bytes(d->limits), zero[3] = {0, 0, 0}, region[3] = {row, s->height, 1};
+    const size_t bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, d->limits);
     cl_int e;
     if (!framebuffer)
         e = clFinish(d->queue);
-    else if (framebuffer == d->in_place && stride == row)
-        e = show_in_place(d, row * s->height);
-    else if (stride == row)
-        e = clEnqueueReadBuffer(d->queue, d->buffers[B_framebuffer], CL_TRUE, 0, row * s->height, framebuffer, 0, NULL, NULL);
+    else if (framebuffer == d->in_place && stride == pitch)
+        e = show_in_place(d, bytes);
+    else if (stride == row && pitch == row)
+        e = clEnqueueReadBuffer(d->queue, d->buffers[B_framebuffer], CL_TRUE, 0, bytes, framebuffer, 0, NULL, NULL);
     else
-        e = clEnqueueReadBufferRect(d->queue, d->buffers[B_framebuffer], CL_TRUE, zero, zero, region, row, 0, stride, 0, framebuffer, 0, NULL,
+        e = clEnqueueReadBufferRect(d->queue, d->buffers[B_framebuffer], CL_TRUE, zero, zero, region, pitch, 0, stride, 0, framebuffer, 0, NULL,
                                     NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "reading the frame", e);
 }

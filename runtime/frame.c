@@ -2,6 +2,7 @@
 #include "byte_order.h"
 #include "vit.h"
 #include <stdio.h>
+#include <string.h>
 
 /* What a walk over the frame does after each pass; NULL: nothing. */
 typedef vit_status after_fn(vit *v, const vit_step *step, void *user, vit_text *why);
@@ -66,7 +67,7 @@ vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, v
     vit_text unused = {""};
     why = why ? why : &unused;
     vit_status status = check_index(v, index, why);
-    if (status == VIT_OK && framebuffer && stride < (size_t)v->pack.scene->width * vit_format_bytes(v->limits.format)) {
+    if (status == VIT_OK && framebuffer && stride < vit_row_bytes(v->pack.scene, &v->limits)) {
         snprintf(why->text, sizeof why->text, "stride %zu is less than a row", stride);
         status = VIT_USAGE;
     }
@@ -88,6 +89,14 @@ typedef struct trace {
     void *user;
 } trace;
 
+/* Rows one behind another: what lies between those of the caller's framebuffer is nobody's. Returns bytes. */
+static size_t pack_rows(const vit *v, char *pixels) {
+    const size_t row = vit_row_bytes(v->pack.scene, &v->limits), pitch = vit_pitch_bytes(&v->limits);
+    for (size_t y = 1; y < v->pack.scene->height && pitch != row; y++)
+        memmove(pixels + y * row, pixels + y * pitch, row);
+    return row * v->pack.scene->height;
+}
+
 static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text *why) {
     trace *t = user;
     const vit_pass *pass = &vit_passes[step->pass];
@@ -96,11 +105,14 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
         if (!(pass->writes >> b & 1) || bytes == 0)
             continue;
         if (bytes > t->size) {
-            snprintf(why->text, sizeof why->text, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b], (unsigned long long)bytes);
+            snprintf(why->text, sizeof why->text, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b],
+                     (unsigned long long)bytes);
             return VIT_USAGE;
         }
         if (v->device->read(v->state, (vit_buffer)b, (size_t)bytes, t->scratch, why) != VIT_OK)
             return VIT_FAILED;
+        if (b == B_framebuffer)
+            bytes = pack_rows(v, t->scratch);
         char name[96], round[16] = "", level[16] = "";
         if (v->limits.rounds > 1)
             snprintf(round, sizeof round, "{%u}", step->round);
@@ -112,7 +124,8 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
     return VIT_OK;
 }
 
-vit_status vit_trace(vit *v, uint32_t index, void *scratch, size_t scratch_size, vit_trace_fn *pass, void *user, vit_text *why) {
+vit_status vit_trace(vit *v, uint32_t index, void *scratch, size_t scratch_size, vit_trace_fn *pass, void *user,
+                     vit_text *why) {
     vit_text unused = {""};
     why = why ? why : &unused;
     trace t = {scratch, scratch_size, pass, user};

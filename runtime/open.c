@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define MOST_PITCH 65536u /* pixels: offsets in the largest picture stay within 32 bits, signed */
+
 static vit_status check_options(const vit_open_info *info, vit_text *why) {
     const char *bad = NULL;
     if (info->lanes != 0 && info->lanes != 1 && info->lanes != 8 && info->lanes != 16)
@@ -26,11 +28,34 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
     return VIT_USAGE;
 }
 
+/* The caller's memory for frames: whole pixels a row, none beyond its end. */
+static vit_status check_framebuffer(const vit_open_info *info, const vit_scene *s, vit_text *why) {
+    const size_t pixel = vit_format_bytes(info->format), row = s->width * pixel,
+                 pitch = info->framebuffer_pitch ? info->framebuffer_pitch : row;
+    const size_t most = pixel * MOST_PITCH;
+    if (!info->framebuffer)
+        return VIT_OK;
+    if (pitch < row || pitch > most || pitch % pixel != 0) {
+        snprintf(why->text, sizeof why->text, "framebuffer_pitch must be %zu to %zu bytes, in pixels of %zu, got %zu", row,
+                 most, pixel, pitch);
+        return VIT_USAGE;
+    }
+    const uint64_t need = (uint64_t)pitch * (s->height - 1) + row;
+    if (info->framebuffer_size == 0 || info->framebuffer_size >= need)
+        return VIT_OK;
+    snprintf(why->text, sizeof why->text, "framebuffer_size: %u rows %zu bytes apart need %llu bytes, there are %zu", s->height,
+             pitch, (unsigned long long)need, info->framebuffer_size);
+    return VIT_USAGE;
+}
+
 static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
     vit_limits l = {
         .effects = s->effects, .max_nodes = s->max_nodes, .max_list = s->max_list, .format = info->format, .view = info->view};
     l.lanes = info->lanes;
     l.group = info->group;
+    l.pitch = info->framebuffer && info->framebuffer_pitch
+                  ? (uint32_t)(info->framebuffer_pitch / vit_format_bytes(info->format))
+                  : s->width;
     if (info->max_nodes)
         l.max_nodes = info->max_nodes;
     if (info->max_list)
@@ -92,7 +117,7 @@ static void describe(const vit_device *d, const vit_pack *pack, const vit_limits
     need->fps = s->fps;
     need->effects = s->effects;
     need->host_bytes = host_bytes(d, pack, l, in_place);
-    need->frame_bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, l);
+    need->frame_bytes = vit_row_bytes(s, l) * s->height;
     for (uint32_t b = 0; b < B_COUNT; b++) {
         uint64_t bytes = vit_buffer_bytes(b, s, l);
         if (bytes == 0)
@@ -112,6 +137,8 @@ static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits 
         status = vit_device_of(info->device, device, why);
     if (status == VIT_OK)
         status = vit_pack_read(info->pack, info->pack_size, pack, why);
+    if (status == VIT_OK)
+        status = check_framebuffer(info, pack->scene, why);
     if (status == VIT_OK)
         *l = limits_of(info, pack->scene);
     return status;

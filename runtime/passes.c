@@ -50,6 +50,14 @@ uint32_t vit_format_word(vit_format format) {
     return bytes[format];
 }
 
+size_t vit_row_bytes(const vit_scene *s, const vit_limits *l) {
+    return (size_t)s->width * vit_format_bytes(l->format);
+}
+
+size_t vit_pitch_bytes(const vit_limits *l) {
+    return (size_t)l->pitch * vit_format_bytes(l->format);
+}
+
 int vit_view_light(vit_view view) {
     static const int shows[] = {
 #define X(name, light, meaning) light,

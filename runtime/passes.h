@@ -24,6 +24,7 @@ typedef struct vit_limits {
     uint32_t max_nodes, max_list;
     vit_format format;
     vit_view view;
+    uint32_t pitch;            /* of the framebuffer: pixels from one row to the next, at least the width */
     uint32_t lanes, group;     /* samples a work-item, work-items a work-group of flat passes */
     uint32_t scan_group;       /* work-items of single-group passes */
     uint32_t splat_group;      /* work-items a node in splat passes */
@@ -93,7 +94,7 @@ typedef struct vit_limits {
     X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                            \
     X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
     X(reached, ON_REACH, NONE, (s->materials + (uint64_t)VIT_REACHED_MORE) * 4)                                                  \
-    X(framebuffer, ALWAYS, NONE, (uint64_t)s->width *s->height *vit_format_bytes(l->format))
+    X(framebuffer, ALWAYS, NONE, (((uint64_t)s->height - 1) * l->pitch + s->width) * vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT
 
@@ -111,6 +112,7 @@ typedef enum vit_buffer {
     V_chunks,
     V_max_nodes,
     V_max_list,
+    V_pitch,
     V_pass,                    /* row of vit_passes */
     V_END
 } vit_buffer;
@@ -182,6 +184,9 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l);
 /* Bytes of a pixel, and of the words that it is made of. */
 uint32_t vit_format_bytes(vit_format format);
 uint32_t vit_format_word(vit_format format);
+/* Bytes of a row of pixels, and from one row of the framebuffer to the next. */
+size_t vit_row_bytes(const vit_scene *s, const vit_limits *l);
+size_t vit_pitch_bytes(const vit_limits *l);
 /* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
 int vit_view_light(vit_view view);
 

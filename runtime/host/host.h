@@ -7,7 +7,7 @@
 /* A pass of a frame: what the kernels' parameters are taken from, by the names of the table's arguments. */
 typedef struct host_call {
     void *buffers[B_COUNT]; /* NULL: not called for */
-    uint32_t frame, round, layers, level, run, chunks, max_nodes, max_list, pass;
+    uint32_t frame, round, layers, level, run, chunks, max_nodes, max_list, pitch, pass;
     uint64_t effects; /* vit_limits.effects */
     vit_view view;
     vit_format format;

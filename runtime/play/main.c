@@ -11,8 +11,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#define PAGE 4096 /* devices that share host memory want the framebuffer on a page */
-
 /* The variables of the program: the signal, Ctrl-C's or SIGTERM, read between frames, and when it came, for handlers alone. */
 static volatile sig_atomic_t stop_requested;
 static struct timespec requested_at;
@@ -117,7 +115,7 @@ static bool is_timed(const play_options *o) {
  * them. */
 static vit_status warm_up(player *p, vit_text *why) {
     return is_timed(p->options) || p->options->pace
-               ? vit_frame(p->v, p->first, p->pixels, p->need.frame_bytes / p->need.height, why)
+               ? vit_frame(p->v, p->first, p->frame.memory.pixels, p->frame.memory.pitch, why)
                : VIT_OK;
 }
 
@@ -146,11 +144,25 @@ static vit_status open_or_fall_back(player *p, vit_text *why) {
     return open_vit(p, why);
 }
 
-/* The sink comes last: it may empty a file, so by then nothing else should fail. */
+/* The sink's memory, or our own. */
+static vit_status take_framebuffer(player *p, vit_text *why) {
+    const sink_kind *sink = p->options->sink;
+    sink_memory lent;
+    vit_status status = sink->lend != NULL ? open_sink(p, why) : VIT_OK;
+    if (status == VIT_OK && sink->lend != NULL)
+        lent = sink->lend(p->sink);
+    if (status == VIT_OK)
+        status = framebuffer_take(&p->frame, sink->lend != NULL ? &lent : NULL, &p->need, why);
+    p->info.framebuffer = p->frame.memory.pixels;
+    p->info.framebuffer_pitch = p->frame.memory.pitch;
+    p->info.framebuffer_size = p->frame.memory.size;
+    return status;
+}
+
+/* A sink that lends no memory comes last: it may empty a file, so by then nothing else should fail. */
 static vit_status open_all(player *p, vit_text *why) {
     const play_options *o = p->options;
-    vit_status status = take_memory(&p->pixels, p->need.frame_bytes, PAGE, "framebuffer", why);
-    p->info.framebuffer = p->pixels;
+    vit_status status = take_framebuffer(p, why);
     if (status == VIT_OK)
         status = open_or_fall_back(p, why);
     p->verdict = (verdict){.compare = o->verify,
@@ -166,22 +178,21 @@ static vit_status open_all(player *p, vit_text *why) {
     if (status == VIT_OK)
         status = report_begin(&p->report, p->all, is_timed(o) ? p->need.pass_count : 0, has_progress(o), why);
     p->pacing = (pacing){.fps = o->pace ? (double)p->need.fps : 0};
-    if (status == VIT_OK)
+    if (status == VIT_OK && !p->sink_is_open)
         status = open_sink(p, why);
     return status;
 }
 
 static vit_status play_frame(player *p, uint32_t index, vit_text *why) {
     double began = pacing_now_ms();
-    size_t stride = p->need.frame_bytes / p->need.height; /* rows are tightly packed, as hashes want them */
-    vit_status status = vit_frame(p->v, index, p->pixels, stride, why);
+    vit_status status = vit_frame(p->v, index, p->frame.memory.pixels, p->frame.memory.pitch, why);
     if (status == VIT_OK)
         status = report_frame(&p->report, p->v, pacing_now_ms() - began, why);
-    if (status == VIT_OK)
-        status = verdict_frame(&p->verdict, p->v, index, p->pixels, p->need.frame_bytes, why);
+    if (status == VIT_OK && verdict_hashes(&p->verdict))
+        status = verdict_frame(&p->verdict, p->v, index, framebuffer_rows(&p->frame), p->need.frame_bytes, why);
     if (status == VIT_OK) {
         pacing_wait(&p->pacing, &stop_requested);
-        status = p->options->sink->write(p->sink, p->pixels, index, why);
+        status = p->options->sink->write(p->sink, p->frame.lent ? NULL : framebuffer_rows(&p->frame), index, why);
     }
     if (status == VIT_OK)
         report_progress(&p->report, ++p->done, p->all);
@@ -208,17 +219,17 @@ static vit_status play(player *p, vit_text *why) {
     const machine_load after = machine_load_now();
     p->others = machine_load_others(&p->load, &after);
     report_progress_clear(&p->report);
+    if (status == VIT_OK)
+        status = vit_stats(p->v, &p->last, why);
+    if (p->v)
+        report_faults(p->v, stderr);
+    vit_close(p->v); /* it may still have the sink's memory */
     if (p->sink_is_open) {
         vit_text late; /* the first failure is the one to tell */
         vit_status closed = p->options->sink->close(p->sink, &late);
         if (status == VIT_OK && closed != VIT_OK)
             status = play_fail(why, closed, "%s", late.text);
     }
-    if (status == VIT_OK)
-        status = vit_stats(p->v, &p->last, why);
-    if (p->v)
-        report_faults(p->v, stderr);
-    vit_close(p->v);
     return status;
 }
 
@@ -232,7 +243,7 @@ static vit_status play_and_count(player *p, vit_text *why) {
     if (status == VIT_OK)
         status = conclude(p, why);
     report_free(&p->report);
-    free(p->pixels);
+    framebuffer_free(&p->frame);
     free(p->arena);
     return status;
 }

@@ -42,7 +42,7 @@ static choice choose_sinks(bool streams) {
     const char *names[SINK_COUNT];
     size_t count = 0;
     for (uint32_t i = 0; sink_at(i) != NULL; i++)
-        if (sink_at(i)->stream || !streams)
+        if (sink_at(i)->writes == SINK_STREAM || !streams)
             names[count++] = sink_at(i)->name;
     return choose(names, count);
 }
@@ -89,9 +89,9 @@ vit_status option_set_out(play_options *o, const char *value, vit_text *why) {
         return play_fail(why, VIT_USAGE, "--out %s takes no target, got '%s'", kind->name, value);
     if (kind->target != NULL && (colon == NULL || colon[1] == '\0'))
         return play_fail(why, VIT_USAGE, "--out %s needs a target: %s:%s", kind->name, kind->name, kind->target);
-    if (kind->target != NULL && !kind->stream && strcmp(colon + 1, "-") == 0)
-        return play_fail(why, VIT_USAGE, "--out %s:-: a folder's name is wanted, one file a frame; to stdout: %s", kind->name,
-                         choose_sinks(true).text);
+    if (kind->target != NULL && kind->writes != SINK_STREAM && strcmp(colon + 1, "-") == 0)
+        return play_fail(why, VIT_USAGE, "--out %s:-: a %s's name is wanted; to stdout: %s", kind->name,
+                         kind->writes == SINK_FOLDER ? "folder" : "file", choose_sinks(true).text);
     o->sink = kind;
     o->target = colon != NULL ? colon + 1 : "";
     o->out_given = true;

@@ -62,7 +62,7 @@ static size_t list_inputs(const play_options *o, named_file list[MOST]) {
 /* Files, not folders of frames, that are written; returns how many. The sink's comes first, if it has one. */
 static size_t list_outputs(const play_options *o, named_file list[MOST]) {
     size_t count = 0;
-    if (o->sink->stream && !sink_uses_stdout(o->sink, o->target))
+    if ((o->sink->writes == SINK_STREAM && !sink_uses_stdout(o->sink, o->target)) || o->sink->writes == SINK_FILE)
         list[count++] = (named_file){"--out", o->target};
     if (o->report_file != NULL)
         list[count++] = (named_file){"--report", o->report_file};
@@ -180,7 +180,7 @@ vit_status outputs_check(const player *p, vit_text *why) {
         if (status == VIT_OK)
             status = try_file(out[i].path, in_place, why);
     }
-    if (status == VIT_OK && o->out_given && o->sink->target != NULL && !o->sink->stream)
+    if (status == VIT_OK && o->out_given && o->sink->writes == SINK_FOLDER)
         status = check_frame_files(p, why);
     return status;
 }

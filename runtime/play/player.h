@@ -2,6 +2,7 @@
 #ifndef VIT_PLAY_PLAYER_H
 #define VIT_PLAY_PLAYER_H
 
+#include "framebuffer.h"
 #include "golden.h"
 #include "machine_load.h"
 #include "options.h"
@@ -18,7 +19,8 @@ typedef struct player {
     vit_requirements need;
     uint32_t first, end; /* frames of a round, checked against the pack */
     uint64_t all;        /* frames of all rounds; UINT64_MAX: without an end */
-    void *arena, *pixels;
+    void *arena;
+    framebuffer frame;
     vit *v;
     void *sink; /* the sink's state */
     bool sink_is_open;

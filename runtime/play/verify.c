@@ -14,8 +14,12 @@ vit_status verdict_begin(const verdict *d, const vit *v, uint32_t first, uint32_
     return VIT_OK;
 }
 
+bool verdict_hashes(const verdict *d) {
+    return d->compare || d->print || d->hashes != NULL;
+}
+
 vit_status verdict_frame(verdict *d, const vit *v, uint32_t index, const void *pixels, size_t bytes, vit_text *why) {
-    if (!d->compare && !d->print && d->hashes == NULL)
+    if (!verdict_hashes(d))
         return VIT_OK;
     uint64_t hash = vit_hash_frame(pixels, d->format, bytes);
     if (d->hashes != NULL)

@@ -20,6 +20,8 @@ typedef struct verdict {
 
 /* VIT_MISMATCH: the pack has no golden hash for a frame of first .. end - 1, in v's format. Nothing was rendered yet. */
 vit_status verdict_begin(const verdict *d, const vit *v, uint32_t first, uint32_t end, vit_text *why);
+/* Does verdict_frame() look at the pixels? */
+bool verdict_hashes(const verdict *d);
 /* Hashes a finished frame, if asked to; a difference is noted and is no failure yet. VIT_FAILED: stdout takes no more. */
 vit_status verdict_frame(verdict *d, const vit *v, uint32_t index, const void *pixels, size_t bytes, vit_text *why);
 /* VIT_MISMATCH: the text says which frame differed first. */

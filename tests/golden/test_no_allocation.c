@@ -201,6 +201,16 @@ static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {
     assert_int_equal(calls_of_a_whole_life("room-buckets", (vit_open_info){.device = VIT_DEVICE_HOST, .profile = 1, .count_work = 1}), 0);
 }
 
+static void nothing_is_allocated_when_the_caller_lends_the_framebuffer(void **state) {
+    (void)state;
+    static _Alignas(64) uint8_t lent[64 * 512]; /* 96 x 64 pixels */
+    const vit_open_info how = {.framebuffer = lent, .framebuffer_pitch = 512, .framebuffer_size = sizeof lent};
+    assert_int_equal(calls_of_a_whole_life("room", how), 0);
+    vit_open_info host = how;
+    host.device = VIT_DEVICE_HOST;
+    assert_int_equal(calls_of_a_whole_life("room", host), 0);
+}
+
 static void nothing_is_allocated_when_passes_are_timed_or_bounds_are_too_small(void **state) {
     (void)state;
     assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){.profile = 1}), 0);
@@ -224,6 +234,7 @@ int main(void) {
         cmocka_unit_test(a_call_of_a_forbidden_function_is_counted),
         cmocka_unit_test(nothing_is_allocated_opened_or_printed_from_open_to_close),
         cmocka_unit_test(the_device_host_takes_all_its_memory_from_the_caller),
+        cmocka_unit_test(nothing_is_allocated_when_the_caller_lends_the_framebuffer),
         cmocka_unit_test(nothing_is_allocated_when_passes_are_timed_or_bounds_are_too_small),
         cmocka_unit_test(a_pack_is_refused_without_allocation),
     };

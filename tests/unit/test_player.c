@@ -248,7 +248,7 @@ static void values_out_of_range_are_refused_with_what_is_taken(void **state) {
     refuses(*state, "nowhere.vit --max-list ten", VIT_USAGE, "--max-list");
     refuses(*state, "nowhere.vit --view inside", VIT_USAGE, "'inside'");
     refuses(*state, "nowhere.vit --format jpeg", VIT_USAGE, "(xrgb8888, rgb565 or rgba32f)");
-    refuses(*state, "nowhere.vit --out jpeg", VIT_USAGE, "(null, raw, y4m, ppm or png)");
+    refuses(*state, "nowhere.vit --out jpeg", VIT_USAGE, "(null, raw, map, y4m, ppm or png)");
     refuses(*state, "nowhere.vit --out png:-", VIT_USAGE, "to stdout: raw or y4m");
     refuses(*state, "nowhere.vit --quiet=1", VIT_USAGE, "--quiet takes no value");
     refuses(*state, "nowhere.vit --device", VIT_USAGE, "--device needs a value");

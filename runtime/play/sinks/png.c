@@ -108,6 +108,7 @@ const sink_kind sink_png = {
     .name = "png",
     .target = "DIR",
     .meaning = "DIR/frame_00000.png and on, 8-bit RGB",
+    .writes = SINK_FOLDER,
     .open = png_sink_open,
     .write = png_sink_write,
     .close = png_sink_close,

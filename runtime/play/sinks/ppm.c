@@ -51,6 +51,7 @@ const sink_kind sink_ppm = {
     .name = "ppm",
     .target = "DIR",
     .meaning = "DIR/frame_00000.ppm and on, binary P6",
+    .writes = SINK_FOLDER,
     .open = ppm_open,
     .write = ppm_write,
     .close = ppm_close,

@@ -11,5 +11,5 @@ const sink_kind *sink_at(uint32_t index) {
 }
 
 bool sink_uses_stdout(const sink_kind *kind, const char *target) {
-    return kind->stream && strcmp(target, "-") == 0;
+    return kind->writes == SINK_STREAM && strcmp(target, "-") == 0;
 }
