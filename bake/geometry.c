@@ -58,9 +58,9 @@ float geometry_ray_offset(const model *m) {
     for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
         for (size_t k = 0; k < 3; k++) {
             const float c = m->position[3 * (size_t)m->index[i] + k];
-            largest = fmaxf(largest, fabsf(c));
-            lo[k] = fminf(lo[k], c);
-            hi[k] = fmaxf(hi[k], c);
+            largest = fabsf(c) > largest ? fabsf(c) : largest; /* fmaxf() is a call, for each of millions */
+            lo[k] = c < lo[k] ? c : lo[k];
+            hi[k] = c > hi[k] ? c : hi[k];
         }
     const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
     return fmaxf(largest * 0x1p-16f, sqrtf((x * x + y * y) + z * z) * 1e-5f);
