@@ -1,6 +1,7 @@
 /* The device `host`: the kernels compiled as C (host/kernels.c), run by threads. Buffers lie in the caller's arena, the pack's
  * sections are used where vit_pack has them. Work-groups are single work-items, so nothing waits within a pass. */
 #include "device.h"
+#include "fail.h"
 #include "host/host.h"
 #include "host/pool.h"
 #include <stdio.h>
@@ -47,10 +48,8 @@ static void list_isas(vit_text *why) {
 
 static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
     const host_program *program = vit_host_find(info->host_isa, l->lanes);
-    if (info->wide_divide) {
-        snprintf(why->text, sizeof why->text, "device host: wide_divide is for devices of OpenCL");
-        return VIT_USAGE;
-    }
+    if (info->wide_divide)
+        return vit_fail(why, VIT_USAGE, "device host: wide_divide is for devices of OpenCL");
     if (!program) {
         char lanes[32] = "";
         if (l->lanes > 0)

@@ -1,4 +1,5 @@
 #include "device_opencl.h"
+#include "fail.h"
 #include "kernel_sources.h"
 #include <stdio.h>
 #include <string.h>
@@ -36,8 +37,7 @@ static const char *error_name(cl_int error) {
 }
 
 static vit_status failed(vit_text *why, const char *call, cl_int error) {
-    snprintf(why->text, sizeof why->text, "OpenCL: %s: %s (%d)", call, error_name(error), (int)error);
-    return VIT_FAILED;
+    return vit_fail(why, VIT_FAILED, "OpenCL: %s: %s (%d)", call, error_name(error), (int)error);
 }
 
 static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
@@ -68,10 +68,8 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
         seen += count;
     }
     if (seen > 1)
-        snprintf(why->text, sizeof why->text, "OpenCL: there is no device %u, only 0 to %u, and host%s", index, seen - 1, without);
-    else
-        snprintf(why->text, sizeof why->text, "OpenCL: there is no device %u, only %shost%s", index, seen > 0 ? "0 and " : "", without);
-    return VIT_FAILED;
+        return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only 0 to %u, and host%s", index, seen - 1, without);
+    return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only %shost%s", index, seen > 0 ? "0 and " : "", without);
 }
 
 const char *vit_opencl_name(uint32_t index, vit_text *why) {
@@ -101,8 +99,7 @@ static uint32_t lesser(uint32_t a, uint32_t b) {
 }
 
 static vit_status refuse_group(const char *what, uint32_t asked, uint32_t most, vit_text *why) {
-    snprintf(why->text, sizeof why->text, "group %u: %s takes at most %u work-items a work-group on this device (0: what suits)", asked, what, most);
-    return VIT_USAGE;
+    return vit_fail(why, VIT_USAGE, "group %u: %s takes at most %u work-items a work-group on this device (0: what suits)", asked, what, most);
 }
 
 int vit_opencl_is(uint32_t index, int gpu) {
@@ -267,14 +264,12 @@ static vit_status check_arithmetic(vit_opencl *d, int ask_wide, vit_text *why) {
     clGetDeviceInfo(d->id, CL_DEVICE_ENDIAN_LITTLE, sizeof little, &little, NULL);
     d->wide_divide = ask_wide || !(config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT);
     if ((little == CL_TRUE) == (VIT_BIG_ENDIAN != 0))
-        snprintf(why->text, sizeof why->text, "OpenCL: the device's order of bytes is not this machine's");
-    else if ((config & needed) != needed)
-        snprintf(why->text, sizeof why->text, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
-    else if (d->wide_divide && !doubles)
-        snprintf(why->text, sizeof why->text, "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");
-    else
-        return VIT_OK;
-    return VIT_FAILED;
+        return vit_fail(why, VIT_FAILED, "OpenCL: the device's order of bytes is not this machine's");
+    if ((config & needed) != needed)
+        return vit_fail(why, VIT_FAILED, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
+    if (d->wide_divide && !doubles)
+        return vit_fail(why, VIT_FAILED, "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");
+    return VIT_OK;
 }
 
 static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text *why) {

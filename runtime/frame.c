@@ -1,5 +1,6 @@
 /* vit_frame, vit_trace: walks the table, in order, and waits once a frame. */
 #include "byte_order.h"
+#include "fail.h"
 #include "vit.h"
 #include <stdio.h>
 #include <string.h>
@@ -59,18 +60,15 @@ vit_status vit_walk(vit *v, uint32_t frame, vit_text *why) {
 static vit_status check_index(const vit *v, uint32_t index, vit_text *why) {
     if (index < v->pack.scene->frames)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "there is no frame %u, only 0 to %u", index, v->pack.scene->frames - 1);
-    return VIT_USAGE;
+    return vit_fail(why, VIT_USAGE, "there is no frame %u, only 0 to %u", index, v->pack.scene->frames - 1);
 }
 
 vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, vit_text *why) {
     vit_text unused = {""};
     why = why ? why : &unused;
     vit_status status = check_index(v, index, why);
-    if (status == VIT_OK && framebuffer && stride < vit_row_bytes(v->pack.scene, &v->limits)) {
-        snprintf(why->text, sizeof why->text, "stride %zu is less than a row", stride);
-        status = VIT_USAGE;
-    }
+    if (status == VIT_OK && framebuffer && stride < vit_row_bytes(v->pack.scene, &v->limits))
+        status = vit_fail(why, VIT_USAGE, "stride %zu is less than a row", stride);
     if (status == VIT_OK)
         status = vit_walk(v, index, why);
     if (status == VIT_OK && (status = v->device->show(v->state, framebuffer, stride, why)) != VIT_OK)
@@ -104,11 +102,9 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
         uint64_t bytes = vit_buffer_bytes(b, v->pack.scene, &v->limits);
         if (!(pass->writes >> b & 1) || bytes == 0)
             continue;
-        if (bytes > t->size) {
-            snprintf(why->text, sizeof why->text, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b],
-                     (unsigned long long)bytes);
-            return VIT_USAGE;
-        }
+        if (bytes > t->size)
+            return vit_fail(why, VIT_USAGE, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b],
+                            (unsigned long long)bytes);
         if (v->device->read(v->state, (vit_buffer)b, (size_t)bytes, t->scratch, why) != VIT_OK)
             return VIT_FAILED;
         if (b == B_framebuffer)

@@ -1,7 +1,7 @@
 /* vit_require, vit_open, vit_close: from a pack to everything that its frames need. */
 #include "byte_order.h"
+#include "fail.h"
 #include "vit.h"
-#include <stdio.h>
 #include <string.h>
 
 #define MOST_PITCH 65536u /* pixels: offsets in the largest picture stay within 32 bits, signed */
@@ -24,8 +24,7 @@ static vit_status check_options(const vit_open_info *info, vit_text *why) {
         bad = "the framebuffer must be aligned to 64 bytes";
     if (!bad)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "%s", bad);
-    return VIT_USAGE;
+    return vit_fail(why, VIT_USAGE, "%s", bad);
 }
 
 /* The caller's memory for frames: whole pixels a row, none beyond its end. */
@@ -35,17 +34,14 @@ static vit_status check_framebuffer(const vit_open_info *info, const vit_scene *
     const size_t most = pixel * MOST_PITCH;
     if (!info->framebuffer)
         return VIT_OK;
-    if (pitch < row || pitch > most || pitch % pixel != 0) {
-        snprintf(why->text, sizeof why->text, "framebuffer_pitch must be %zu to %zu bytes, in pixels of %zu, got %zu", row,
-                 most, pixel, pitch);
-        return VIT_USAGE;
-    }
+    if (pitch < row || pitch > most || pitch % pixel != 0)
+        return vit_fail(why, VIT_USAGE, "framebuffer_pitch must be %zu to %zu bytes, in pixels of %zu, got %zu", row, most,
+                        pixel, pitch);
     const uint64_t need = (uint64_t)pitch * (s->height - 1) + row;
     if (info->framebuffer_size == 0 || info->framebuffer_size >= need)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "framebuffer_size: %u rows %zu bytes apart need %llu bytes, there are %zu", s->height,
-             pitch, (unsigned long long)need, info->framebuffer_size);
-    return VIT_USAGE;
+    return vit_fail(why, VIT_USAGE, "framebuffer_size: %u rows %zu bytes apart need %llu bytes, there are %zu", s->height,
+                    pitch, (unsigned long long)need, info->framebuffer_size);
 }
 
 static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
@@ -160,10 +156,8 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
 static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device,
                              vit **out, vit_device_setup *setup, vit_text *why) {
     size_t need = host_bytes(device, pack, l, info->framebuffer != NULL);
-    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need) {
-        snprintf(why->text, sizeof why->text, "the arena must be aligned to 64 bytes and hold %zu", need);
-        return VIT_USAGE;
-    }
+    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need)
+        return vit_fail(why, VIT_USAGE, "the arena must be aligned to 64 bytes and hold %zu", need);
     vit *v = info->arena;
     memset(v, 0, round_up(sizeof *v) + round_up(device->state_bytes));
     v->pack = *pack;

@@ -5,13 +5,14 @@
 #define VIT_PACK_CHECK_H
 
 #include "byte_order.h"
+#include "fail.h"
 #include "pack_read.h"
 
 #include <float.h>
 #include <stdbool.h>
 
-/* Writes "pack: " and the formatted line, returns VIT_BAD_INPUT. */
-vit_status vit_pack_refuse(vit_text *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Says "pack: " and the line. */
+#define vit_pack_refuse(why, ...) vit_fail(why, VIT_BAD_INPUT, "pack: " __VA_ARGS__)
 
 /* A check for each section: pack_read.c calls them in the order of VIT_SECTIONS, and one that is missing here does not compile
  * there. */

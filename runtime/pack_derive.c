@@ -1,8 +1,8 @@
 /* pack_derive.c: the fields of the scene that follow from others, and the limits of those others. Baker and loader share it,
  * so that a pack cannot say one resolution and size its buffers by another. */
 #include "vitrine_pack.h"
+#include "fail.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Limits that keep every product of counts within 32 bits, and every buffer within what a device may be asked for. */
@@ -25,10 +25,8 @@ enum {
 };
 
 static vit_status refuse_count(vit_text *why, const char *name, uint64_t least, uint64_t most, uint64_t got) {
-    if (why)
-        snprintf(why->text, sizeof why->text, "%s must be in %llu..%llu, got %llu", name, (unsigned long long)least,
-                 (unsigned long long)most, (unsigned long long)got);
-    return VIT_BAD_INPUT;
+    return vit_fail(why, VIT_BAD_INPUT, "%s must be in %llu..%llu, got %llu", name, (unsigned long long)least,
+                    (unsigned long long)most, (unsigned long long)got);
 }
 
 static vit_status check_counts(const vit_scene *s, vit_text *why) {
@@ -60,16 +58,10 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
         if (counts[i].value < counts[i].least || counts[i].value > counts[i].most)
             return refuse_count(why, counts[i].name, counts[i].least, counts[i].most, counts[i].value);
-    if (s->copies & (s->copies - 1)) {
-        if (why)
-            snprintf(why->text, sizeof why->text, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
-        return VIT_BAD_INPUT;
-    }
-    if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64) {
-        if (why)
-            snprintf(why->text, sizeof why->text, "tile must be 8, 16, 32 or 64, got %u", s->tile);
-        return VIT_BAD_INPUT;
-    }
+    if (s->copies & (s->copies - 1))
+        return vit_fail(why, VIT_BAD_INPUT, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
+    if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64)
+        return vit_fail(why, VIT_BAD_INPUT, "tile must be 8, 16, 32 or 64, got %u", s->tile);
     return VIT_OK;
 }
 

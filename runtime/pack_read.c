@@ -4,8 +4,6 @@
 #include "byte_order.h"
 #include "pack_check.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Layouts are the same for every compiler only as long as this holds; ATLS is a plain array of words. */
@@ -29,17 +27,6 @@ static const uint32_t record_bytes[VIT_SECTION_COUNT] = {
 };
 
 #define TABLE_END (sizeof(vit_pack_header) + VIT_SECTION_COUNT * sizeof(vit_pack_entry))
-
-vit_status vit_pack_refuse(vit_text *why, const char *format, ...) {
-    if (!why)
-        return VIT_BAD_INPUT;
-    int used = snprintf(why->text, sizeof why->text, "pack: ");
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(why->text + used, sizeof why->text - (size_t)used, format, arguments);
-    va_end(arguments);
-    return VIT_BAD_INPUT;
-}
 
 /* Whole words by memcmp against a block of zeros: gaps may be large. */
 static bool bytes_are_zero(const unsigned char *bytes, size_t size) {

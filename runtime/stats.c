@@ -1,17 +1,16 @@
 /* vit_stats, vit_reached: read counters back; not for the frame loop. */
 #include "vit.h"
+#include "fail.h"
 #include "work.h"
-#include <stdio.h>
 #include <string.h>
 
 vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why) {
     vit_text unused = {""};
     why = why ? why : &unused;
     const uint64_t bytes = vit_buffer_bytes(B_reached, v->pack.scene, &v->limits);
-    if (bytes == 0 || bytes != (uint64_t)count * sizeof *words) {
-        snprintf(why->text, sizeof why->text, "vit_reached: %u words asked for, there are %llu", count, (unsigned long long)bytes / 4);
-        return VIT_USAGE;
-    }
+    if (bytes == 0 || bytes != (uint64_t)count * sizeof *words)
+        return vit_fail(why, VIT_USAGE, "vit_reached: %u words asked for, there are %llu", count,
+                        (unsigned long long)bytes / 4);
     return v->device->read(v->state, B_reached, (size_t)bytes, words, why);
 }
 

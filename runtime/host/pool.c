@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* sched_getaffinity: no file is read, unlike in sysconf */
 #include "pool.h"
+#include "../fail.h"
 #include <fenv.h>
 #include <sched.h>
-#include <stdio.h>
 #include <string.h>
 
 #define GRAINS 16 /* stretches a thread takes of a pass, about: enough to even out, few enough to cost nothing */
@@ -54,8 +54,8 @@ vit_status vit_host_pool_open(host_pool *p, uint32_t threads, vit_text *why) {
     for (; p->helpers + 1 < count; p->helpers++) {
         int error = pthread_create(&p->threads[p->helpers], NULL, helper, p);
         if (error != 0) {
-            snprintf(why->text, sizeof why->text, "device host: thread %u of %u cannot be started: error %d", p->helpers + 2,
-                     count, error);
+            (void)vit_fail(why, VIT_FAILED, "device host: thread %u of %u cannot be started: error %d", p->helpers + 2, count,
+                           error);
             vit_host_pool_close(p);
             return VIT_FAILED;
         }
