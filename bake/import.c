@@ -242,7 +242,7 @@ static void next_file(importer *im, const char *file) {
     im->farthest = 0.0;
     im->allowed = im->allowed_texels = 0;
     im->no_materials[0] = '\0';
-    im->warned_colors = false;
+    im->warned_colors = im->warned_morph = im->warned_bones = false;
     free(im->means);
     im->means = NULL;
     im->mean_count = im->mean_room = 0;

@@ -152,6 +152,7 @@ static void apply_override(importer *im, material_use *use) {
         if (o->has_texture) {
             memcpy(use->image, o->texture, sizeof use->image);
             use->image_resolved = true;
+            use->image_line = o->line;
             use->uv_set = 0;
             use->has_transform = false;
             use->m.wrap_u = use->m.wrap_v = VIT_WRAP_REPEAT;
@@ -199,11 +200,22 @@ static bool has_alpha(const model_image *image, float factor, float cutoff) {
     return false;
 }
 
+/* What is wrong with an image that the scene file names is told of with its line. */
+static bool take_texture(importer *im, material_use *use) {
+    const char *file = im->file;
+    char where[SCENE_PATH + 16];
+    (void)snprintf(where, sizeof where, "%.*s:%d", SCENE_PATH - 1, im->s->path, use->image_line);
+    im->file = use->image_resolved ? where : file;
+    const bool fine = import_texture(im, use->image, use->image_resolved, use->m.name, &use->m.image);
+    im->file = file;
+    return fine;
+}
+
 bool import_material_index(importer *im, material_use *use, uint32_t *index) {
     model *m = im->m;
     if (use->index < 0) {
         const bool seen = use->m.albedo[0] > 0 || use->m.albedo[1] > 0 || use->m.albedo[2] > 0 || use->m.cutoff > 0;
-        if (use->image[0] && seen && !import_texture(im, use->image, use->image_resolved, use->m.name, &use->m.image))
+        if (use->image[0] && seen && !take_texture(im, use))
             return false;
         /* Without a hole there is no cut-out to pay for. */
         if (use->m.image < 0 || !has_alpha(&m->images[use->m.image], use->m.alpha, use->m.cutoff))

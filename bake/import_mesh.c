@@ -248,12 +248,23 @@ static bool add_instance(importer *im, instance *in) {
     return true;
 }
 
+/* Once a file. */
+static void say_rigid(importer *im, const struct aiMesh *mesh) {
+    if (mesh->mNumAnimMeshes > 0 && !im->warned_morph)
+        import_warn(im, "morph targets are left out: meshes keep their base shape");
+    if (mesh->mNumBones > 0 && !im->warned_bones)
+        import_warn(im, "skins are left out: meshes do not follow their bones");
+    im->warned_morph |= mesh->mNumAnimMeshes > 0;
+    im->warned_bones |= mesh->mNumBones > 0;
+}
+
 bool import_mesh(importer *im, const struct aiMesh *mesh, const double world[12]) {
     if (!mesh->mVertices || !mesh->mFaces || !mesh->mNumVertices || !mesh->mNumFaces)
         return true;
     if (mesh->mMaterialIndex >= im->ai->mNumMaterials)
         return import_fail(im, "mesh '%.100s' has material %u of %u", mesh->mName.data, mesh->mMaterialIndex,
                            im->ai->mNumMaterials);
+    say_rigid(im, mesh);
     instance in = {.mesh = mesh, .world = world, .mirrored = determinant(world) < 0.0};
     in.position = calloc(mesh->mNumVertices, 3 * sizeof *in.position);
     in.vertex = calloc(mesh->mNumVertices, sizeof *in.vertex);

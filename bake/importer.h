@@ -38,7 +38,7 @@ typedef struct importer {
     char clear_name[SCENE_NAME];           /* material of the first that was dropped for transparency */
     bool inverse;                          /* the file's opacities are transparencies (import_transparency.c) */
     import_shown shown;
-    bool warned_colors;
+    bool warned_colors, warned_morph, warned_bones;
     struct texture_mean *means;         /* that were asked for, of this file */
     size_t mean_count, mean_room;
     uint64_t too_far;                   /* triangles of this file with a vertex beyond IMPORT_FAR */
@@ -64,6 +64,7 @@ typedef struct material_use {
     bool alpha_mapped;         /* the colour texture's alpha counts */
     char image[SCENE_PATH];    /* file or "*index" as Assimp gives it; "" if none */
     bool image_resolved;       /* `image` comes from the scene file: take it as it is */
+    int image_line;            /* there, for errors */
     unsigned uv_set;
     bool has_transform;
     double uv[6];              /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */

@@ -5,6 +5,7 @@
  * that rays met -> pack. */
 #include "pipeline.h"
 #include "bounds.h"
+#include "file_trouble.h"
 #include "glass_gap.h"
 #include "light_units.h"
 #include "photons.h"
@@ -30,9 +31,33 @@ static void step(void *user, double fraction) {
     progress_step(user, fraction);
 }
 
+static vit_status file_fails(const scene *s, int line, const char *what, const char *file, const char *trouble, vit_text *why) {
+    snprintf(why->text, sizeof why->text, "%.200s:%d: %s '%.200s' %s", s->path, line, what, file, trouble);
+    for (char *c = why->text; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            *c = '?';
+    return VIT_BAD_INPUT;
+}
+
+/* What a scene file names can be opened: known before the first of it is imported. A missing texture is a matter of --strict. */
+static vit_status files_are_there(const scene *s, vit_text *why) {
+    for (int i = 0; i < s->mesh_count; i++) {
+        const char *trouble = file_trouble(s->meshes[i].file);
+        if (trouble)
+            return file_fails(s, s->meshes[i].line, "mesh", s->meshes[i].file, trouble, why);
+    }
+    const char *trouble = s->sky.image[0] ? file_trouble(s->sky.image) : NULL;
+    return trouble ? file_fails(s, s->sky.line, "sky", s->sky.image, trouble, why) : VIT_OK;
+}
+
 vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
     const char *dot = strrchr(path, '.');
-    return dot && strcmp(dot, ".cfg") == 0 ? scene_read(path, out, why) : scene_for_mesh(path, out, why);
+    if (!dot || strcmp(dot, ".cfg") != 0)
+        return scene_for_mesh(path, out, why);
+    vit_status status = scene_read(path, out, why);
+    if (status == VIT_OK && (status = files_are_there(out, why)) != VIT_OK)
+        scene_free(out);
+    return status;
 }
 
 static vit_status draw_glass_in(model *m, vit_text *why) {

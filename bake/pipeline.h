@@ -79,7 +79,8 @@ typedef struct pipeline_packed {
     size_t size;
 } pipeline_packed;
 
-/* Reads a scene file (.cfg), or makes a scene for a bare mesh. */
+/* Reads a scene file (.cfg), or makes a scene for a bare mesh. VIT_BAD_INPUT: also if a mesh or sky that it names is not there.
+ * On failure nothing is left to free. */
 vit_status pipeline_read(const char *path, scene *out, vit_text *why);
 vit_status pipeline_load(pipeline *p, vit_text *why);
 void pipeline_free(pipeline *p);

@@ -83,6 +83,7 @@ static bool read_sky(reader *r, const config_setting_t *root) {
         return true;
     if (!fields_read(&r->at, group, sky_fields, FIELD_COUNT(sky_fields), sky, &seen))
         return false;
+    sky->line = (int)config_setting_source_line(group);
     if (!sky->image[0] && (seen & (FIELD_BIT(SKY_SCALE) | FIELD_BIT(SKY_ROTATE))))
         return fields_fail(&r->at, group, "'scale' and 'rotate' are for an 'image'");
     if (!(seen & FIELD_BIT(SKY_LIGHT)))

@@ -70,6 +70,7 @@ typedef struct scene_sky {
     double scale;              /* factor on the image's values, which are W/(m2 sr) then */
     double rotate;             /* degrees about y */
     bool light;                /* the sky lights the scene */
+    int line;                  /* in the scene file, for errors */
 } scene_sky;
 
 /* What `effects` of a scene file says. */

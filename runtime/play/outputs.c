@@ -157,6 +157,15 @@ static vit_status check_replaced(const play_options *o, const char *option, cons
     return status == VIT_OK ? check_apart(o, option, partial, why) : status;
 }
 
+/* Nobody has named the file of a frame: what a link there points to is left alone, and what is no file cannot be replaced. */
+static vit_status check_plain(const char *path, vit_text *why) {
+    struct stat s;
+    if (lstat(path, &s) != 0 || S_ISREG(s.st_mode))
+        return VIT_OK;
+    return play_fail(why, VIT_USAGE, "--out %.300s: is there and is %s: remove it, or give another folder", path,
+                     S_ISLNK(s.st_mode) ? "a link" : "not a file");
+}
+
 /* Each frame's own file; sinks into folders are named as their files end. */
 static vit_status check_frame_files(const player *p, vit_text *why) {
     const play_options *o = p->options;
@@ -165,6 +174,8 @@ static vit_status check_frame_files(const player *p, vit_text *why) {
     for (uint32_t i = p->first; i < p->end && status == VIT_OK; i++) {
         (void)snprintf(path, sizeof path, "%s/frame_%05u.%s", o->target, i, o->sink->name);
         status = check_replaced(o, "--out", path, why);
+        if (status == VIT_OK)
+            status = check_plain(path, why);
     }
     return status;
 }

@@ -5,10 +5,12 @@
  * left out with a message where the test may not mount. The picture must be there in any case, with the golden hashes, and one
  * line that names the folder and the cure. PoCL's variables also make several devices of one, and devices with small
  * work-groups. */
-#define _GNU_SOURCE /* mount */
+#define _GNU_SOURCE /* mount, unshare */
 #include "test_packs.h"
 #include "vitrine.h"
 
+#include <sched.h>
+#include <stdbool.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 
@@ -18,11 +20,19 @@
 
 static tool_run r;
 
+/* What is mounted is seen by this process and its children alone, and goes with them, however they end. */
+static bool may_mount;
+
 static int set_up(void **state) {
     (void)state;
     test_packs_begin();
     (void)mkdir(FOLDER, 0777);
+    may_mount = unshare(CLONE_NEWNS) == 0 && mount(NULL, "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0;
     return 0;
+}
+
+static bool mount_small(const char *folder, const char *size) {
+    return may_mount && mount("tmpfs", folder, "tmpfs", 0, size) == 0;
 }
 
 static int has_pocl(void) {
@@ -111,7 +121,7 @@ static void a_full_disk_plays_on_host(void **state) {
         return;
     (void)mkdir(FOLDER "/full", 0777);
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        if (mount("tmpfs", FOLDER "/full", "tmpfs", 0, sizes[i]) != 0) {
+        if (!mount_small(FOLDER "/full", sizes[i])) {
             print_message("may not mount here: a full disk is not tried\n");
             break;
         }
@@ -129,7 +139,7 @@ static void a_read_only_disk_plays_on_host_whatever_is_in_the_cache(void **state
     if (!has_pocl())
         return;
     (void)mkdir(FOLDER "/filled", 0777);
-    if (mount("tmpfs", FOLDER "/filled", "tmpfs", 0, "size=200m") != 0) {
+    if (!mount_small(FOLDER "/filled", "size=200m")) {
         print_message("may not mount here: a read-only disk is not tried\n");
         return;
     }

@@ -178,6 +178,27 @@ static void the_player_writes_over_nothing_that_it_reads(void **state) {
     (void)unlink(FOLDER "/d/frame_00001.ppm");
 }
 
+/* Nobody names the files of frames: what stands in their way is not followed, not replaced, and known before the first. */
+static void no_frame_is_written_through_a_link(void **state) {
+    struct stat s;
+    (void)state;
+    assert_int_equal(mkdir(FOLDER "/frames", 0777), 0);
+    assert_int_equal(symlink("../over.ppm", FOLDER "/frames/frame_00001.ppm"), 0);
+    tool(&r, VIT_BUILD_DIR "/vitrine-play " PACK " --quiet --device host --out ppm:" FOLDER "/frames");
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "frame_00001.ppm: is there and is a link");
+    check_inputs();
+    assert_true(lstat(FOLDER "/frames/frame_00001.ppm", &s) == 0 && S_ISLNK(s.st_mode));
+    assert_int_not_equal(lstat(FOLDER "/frames/frame_00000.ppm", &s), 0);
+    assert_int_equal(unlink(FOLDER "/frames/frame_00001.ppm"), 0);
+    assert_int_equal(mkfifo(FOLDER "/frames/frame_00001.ppm", 0666), 0);
+    tool(&r, VIT_BUILD_DIR "/vitrine-play " PACK " --quiet --device host --out ppm:" FOLDER "/frames");
+    tool_refuses(&r, "vitrine-play", VIT_USAGE, "is not a file");
+    assert_int_equal(unlink(FOLDER "/frames/frame_00001.ppm"), 0);
+    tool(&r, VIT_BUILD_DIR "/vitrine-play " PACK " --quiet --device host --out ppm:" FOLDER "/frames");
+    tool_succeeds(&r);
+    tool(&r, "rm -r " FOLDER "/frames");
+}
+
 static void two_outputs_of_a_run_are_two_files(void **state) {
     (void)state;
     tool(&r, PLAY "--report " AS ".json --out raw:" AS ".json");
@@ -286,6 +307,7 @@ int main(void) {
         cmocka_unit_test(what_the_scene_names_is_known_before_any_stage),
         cmocka_unit_test(no_report_is_written_over_the_scene),
         cmocka_unit_test(the_player_writes_over_nothing_that_it_reads),
+        cmocka_unit_test(no_frame_is_written_through_a_link),
         cmocka_unit_test(two_outputs_of_a_run_are_two_files),
         cmocka_unit_test(what_cannot_be_written_is_known_before_the_work),
         cmocka_unit_test(a_check_leaves_nothing_behind),

@@ -79,7 +79,7 @@ static void the_baker_refuses_values_out_of_range(void **state) {
     bake_refuses("scene.cfg --radius nan" OUT, VIT_USAGE, " m, or auto");
     bake_refuses("scene.cfg --estimate guess" OUT, VIT_USAGE, "list or buckets");
     bake_refuses("scene.cfg --threads many" OUT, VIT_USAGE, "--threads");
-    bake_refuses("scene.cfg --frames 4294967298" OUT, VIT_USAGE, "--frames"); /* 2^32 + 2 */
+    bake_refuses("scene.cfg --frames 4294967298" OUT, VIT_USAGE, "--frames");           /* 2^32 + 2 */
     bake_refuses("scene.cfg --frames 18446744073709551618" OUT, VIT_USAGE, "--frames"); /* 2^64 + 2 */
     bake_refuses("scene.cfg --frames 2x" OUT, VIT_USAGE, "--frames");
     bake_refuses("scene.cfg --frames +2" OUT, VIT_USAGE, "--frames");
@@ -125,9 +125,66 @@ static void a_list_bakes_nothing(void **state) {
     assert_int_equal(empty(FOLDER), 0);
 }
 
+static void write_text(const char *path, const char *text) {
+    FILE *f = fopen(path, "wb");
+    assert_non_null(f);
+    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
+    assert_int_equal(fclose(f), 0);
+}
+
+/* A triangle with a morph target, in a file that says that it needs what nobody reads. */
+static void a_list_says_what_is_not_done(void **state) {
+    static const char file[] =
+        "{\"asset\": {\"version\": \"2.0\"}, \"extensionsUsed\": [\"VENDOR_dream\", \"VENDOR_tint\"], "
+        "\"extensionsRequired\": [\"VENDOR_dream\"],"
+        "\"scene\": 0, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}],"
+        "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"targets\": [{\"POSITION\": 0}]}], "
+        "\"weights\": [0]}],"
+        "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", "
+        "\"min\": [0, 0, 0], \"max\": [1, 1, 0]}],"
+        "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}],"
+        "\"buffers\": [{\"byteLength\": 36, \"uri\": "
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
+    (void)state;
+    write_text(FOLDER "/morph.gltf", file);
+    tool(&r, TOOL_BAKE " --list " FOLDER "/morph.gltf");
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.out, "\nnot done 2\n"));
+    assert_non_null(strstr(r.out, "morph targets are left out"));
+    assert_non_null(strstr(r.out, "extension 'VENDOR_dream' is required and not read"));
+    assert_null(strstr(r.out, "'VENDOR_tint' is required")); /* the file can do without */
+    tool(&r, TOOL_BAKE " --list=json " FOLDER "/morph.gltf");
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.out, "'VENDOR_dream' is required and not read"));
+    assert_int_equal(remove(FOLDER "/morph.gltf"), 0);
+}
+
+/* With the line that names it, before anything is imported. */
+static void what_a_scene_file_names_and_is_not_there_is_named_with_its_line(void **state) {
+    static const char camera[] = "camera: { keys = ({ eye = [0.0, 1.0, 3.0]; target = [0.0, 0.0, 0.0]; }); };\n";
+    char text[1024];
+    (void)state;
+    (void)snprintf(text, sizeof text, "%smeshes = ({ file = \"here.obj\"; },\n { file = \"gone.obj\"; });\n", camera);
+    write_text(TEST_PACKS "/names.cfg", text);
+    write_text(TEST_PACKS "/here.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n");
+    bake_refuses(TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:3: mesh '" TEST_PACKS "/gone.obj' is not there");
+    bake_refuses("--list " TEST_PACKS "/names.cfg", VIT_BAD_INPUT, "names.cfg:3: mesh '");
+    (void)snprintf(text, sizeof text, "%smeshes = ({ file = \"here.obj\"; });\nsky: {\n image = \"gone.hdr\"; };\n", camera);
+    write_text(TEST_PACKS "/names.cfg", text);
+    bake_refuses(TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:3: sky '" TEST_PACKS "/gone.hdr' is not there");
+    (void)snprintf(text, sizeof text,
+                   "%smeshes = ({ file = \"here.obj\"; });\nmaterials = (\n{ name = \"paint\"; texture = \"gone.png\"; });\n",
+                   camera);
+    write_text(TEST_PACKS "/names.cfg", text);
+    bake_refuses("--strict " TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:4: material 'paint': texture '");
+    assert_int_equal(remove(TEST_PACKS "/names.cfg"), 0);
+    assert_int_equal(remove(TEST_PACKS "/here.obj"), 0);
+}
+
 static void an_option_and_its_value_may_be_one_word(void **state) {
     (void)state;
-    tool(&r, TOOL_BAKE " --quiet --device=host --size=16x12 --frames=1 --photons=10 " TEST_SCENES "/furnace.cfg --output=" FOLDER "/out.vit");
+    tool(&r, TOOL_BAKE " --quiet --device=host --size=16x12 --frames=1 --photons=10 " TEST_SCENES
+                       "/furnace.cfg --output=" FOLDER "/out.vit");
     tool_succeeds(&r);
     tool(&r, TOOL_PLAY " --quiet --device=host --explain " FOLDER "/out.vit");
     tool_succeeds(&r);
@@ -423,6 +480,8 @@ int main(void) {
         cmocka_unit_test(the_baker_refuses_options_that_it_does_not_know),
         cmocka_unit_test(the_baker_refuses_values_out_of_range),
         cmocka_unit_test(a_list_bakes_nothing),
+        cmocka_unit_test(a_list_says_what_is_not_done),
+        cmocka_unit_test(what_a_scene_file_names_and_is_not_there_is_named_with_its_line),
         cmocka_unit_test(an_option_and_its_value_may_be_one_word),
         cmocka_unit_test(the_baker_names_a_file_that_is_missing),
         cmocka_unit_test(the_baker_refuses_bad_scenes_with_file_and_line),
