@@ -86,6 +86,7 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
     }
     free(normals);
     out->ray_offset = geometry_ray_offset(m);
+    out->box_pad = b->box_pad;
     return VIT_OK;
 }
 

@@ -1,13 +1,14 @@
-/* photon_rays.c: nearest and any hits by Embree, with the distances that kernels/ray.clh computes. */
+/* photon_rays.c: nearest and any hits as kernels/ray.clh finds them, holes of cut-out materials and all. */
 #ifndef VIT_BAKE_PHOTON_RAYS_H
 #define VIT_BAKE_PHOTON_RAYS_H
 
 #include "photon_surface.h"
+#include "triangle_rays.h"
 
 typedef struct photon_rays {
     const photon_scene *s;
-    struct RTCDeviceTy *device;
-    struct RTCSceneTy *scene;
+    triangle_rays rays;
+    bool cutouts; /* materials have holes */
 } photon_rays;
 
 /* False: Embree fails; there is nothing to close. Triangles and attributes of `s` are used in place. */

@@ -28,13 +28,17 @@ static vec about(vec n, float x, float y, float z) {
 
 /* Even over the cone cos >= least about n; the whole sphere for -1. */
 static vec cone_direction(vec n, float least, float u, float v) {
-    const float z = 1.0f - u * (1.0f - least), r = sqrtf(fmaxf(0.0f, 1.0f - z * z)), phi = 6.2831853f * v;
-    return about(n, r * cosf(phi), r * sinf(phi), z);
+    const float z = 1.0f - u * (1.0f - least), r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+    float sine, cosine;
+    sincos_turn(v, &sine, &cosine);
+    return about(n, r * cosine, r * sine, z);
 }
 
 static vec disc_point(vec center, vec n, float radius, float u, float v) {
-    const float r = radius * sqrtf(u), phi = 6.2831853f * v;
-    return plus(center, 1.0f, about(n, r * cosf(phi), r * sinf(phi), 0.0f));
+    const float r = radius * sqrtf(u);
+    float sine, cosine;
+    sincos_turn(v, &sine, &cosine);
+    return plus(center, 1.0f, about(n, r * cosine, r * sine, 0.0f));
 }
 
 static const vit_light *light_of(const reach_lights *l, uint32_t source, uint32_t frame) {

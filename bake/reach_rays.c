@@ -1,19 +1,6 @@
 /* Rays for reach.c. Starting points and hits keep away from edges: a ray that starts within rounding of a neighbour, or a hit
  * on a silhouette, would connect the two sides of a closed wall. */
 #include "reach_rays.h"
-#include <math.h>
-#include <stdio.h>
-
-#if VIT_EMBREE == 4
-#include <embree4/rtcore.h>
-typedef struct RTCRayQueryContext embree_context;
-#define ASKED_FILTER RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS /* a filter for the rays that ask for one */
-#else
-#include <embree3/rtcore.h>
-typedef struct RTCIntersectContext embree_context;
-#define ASKED_FILTER RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
-#endif
-
 #define INSET 4.0f    /* ray offsets that starting points keep from a triangle's edges, if it is large enough */
 #define GRAZING 1e-3f /* a hit at a smaller cosine, or nearer to an edge (barycentric), tells no side */
 #define EDGE 1e-4f
@@ -115,122 +102,64 @@ vec side_point(const ray_side *s, float u, float v) {
 vec cosine_direction(vec n, float u, float v) {
     const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a; /* basis: Duff et al. 2017 */
     const vec t = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, w = {b, sign + n.y * n.y * a, -n.y};
-    const float r = sqrtf(u), phi = 6.2831853f * v, height = sqrtf(fmaxf(0.0f, 1.0f - u));
-    vec d = scaled_sum((vec){0.0f, 0.0f, 0.0f}, r * cosf(phi), t);
-    d = scaled_sum(d, r * sinf(phi), w);
+    const float r = sqrtf(u), height = sqrtf(fmaxf(0.0f, 1.0f - u));
+    float sine, cosine;
+    sincos_turn(v, &sine, &cosine);
+    vec d = scaled_sum((vec){0.0f, 0.0f, 0.0f}, r * cosine, t);
+    d = scaled_sum(d, r * sine, w);
     return unit(scaled_sum(d, fmaxf(height, 0.02f), n)); /* not along its own surface */
 }
 
-/* A ray and the triangle that is not there for it. */
-typedef struct query {
-    embree_context context; /* first: Embree hands its address to the filter */
-    uint32_t skip;
-} query;
+/* Whose hits do not count. */
+typedef struct rule {
+    const ray_scene *s;
+    uint32_t skip; /* a triangle that is not there for the ray; RAY_NOTHING: all are */
+} rule;
 
-static void skip_one(const struct RTCFilterFunctionNArguments *f) {
-    const query *q = (const query *)(const void *)f->context;
-    if (f->valid[0] == -1 && ((const struct RTCHit *)(const void *)f->hit)->primID == q->skip)
-        f->valid[0] = 0;
-}
-
-/* primID is the triangle; a cut-out one shrinks to a point, which no ray hits. */
-static bool add_triangles(const model *m, ray_scene *s) {
-    RTCGeometry mesh = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s->g->triangles, 0, sizeof(vit_triangle) / 3,
-                               3 * (size_t)m->triangles);
-    uint32_t *index =
-        rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof *index, m->triangles);
-    for (uint32_t i = 0; index && i < m->triangles; i++) {
-        const bool hole = m->materials[s->g->attributes[i].material & VIT_MATERIAL_INDEX].cutoff > 0.0f;
-        for (uint32_t k = 0; k < 3; k++)
-            index[3 * i + k] = 3 * i + (hole ? 0 : k);
-    }
-    if (index) {
-#if VIT_EMBREE == 4
-        rtcSetGeometryEnableFilterFunctionFromArguments(mesh, true);
-#endif
-        rtcCommitGeometry(mesh);
-        rtcAttachGeometry(s->scene, mesh);
-        rtcCommitScene(s->scene);
-    }
-    rtcReleaseGeometry(mesh);
-    return index && rtcGetDeviceError(s->device) == RTC_ERROR_NONE;
+static bool is_there(const void *user, const triangle_hit *h) {
+    const rule *r = user;
+    return h->triangle != r->skip && !(r->s->holes && side_material(r->s->m, r->s->g, 2 * h->triangle)->cutoff > 0.0f);
 }
 
 bool ray_scene_open(const model *m, const geometry *g, unsigned threads, ray_scene *out) {
-    char config[32];
-    snprintf(config, sizeof config, "threads=%u", threads);
-    *out = (ray_scene){.g = g, .m = m, .matt = true, .device = rtcNewDevice(config)};
-    for (int i = 0; i < m->material_count; i++)
+    *out = (ray_scene){.g = g, .m = m, .matt = true};
+    for (int i = 0; i < m->material_count; i++) {
         out->matt &= m->materials[i].kind == VIT_MATTE;
-    if (!out->device)
-        return false;
-    out->scene = rtcNewScene(out->device);
-    if (out->scene)
-        rtcSetSceneFlags(out->scene, RTC_SCENE_FLAG_ROBUST | ASKED_FILTER);
-    if (out->scene && add_triangles(m, out))
-        return true;
-    ray_scene_close(out);
-    return false;
+        out->holes |= m->materials[i].cutoff > 0.0f;
+    }
+    return triangle_rays_open(g->triangles, m->triangles, g->box_pad, threads, &out->rays);
 }
 
 void ray_scene_close(ray_scene *s) {
-    if (s->scene)
-        rtcReleaseScene(s->scene);
-    if (s->device)
-        rtcReleaseDevice(s->device);
-    *s = (ray_scene){0};
+    triangle_rays_close(&s->rays);
+}
+
+static vec3 vec3_of(vec a) {
+    return (vec3){a.x, a.y, a.z};
+}
+
+/* Distance of the line through the hit from the nearest edge, as a share of the triangle's height above it. */
+static float least_share(const float weight[3]) {
+    const float sum = fabsf(weight[0]) + fabsf(weight[1]) + fabsf(weight[2]);
+    return float_min(float_min(fabsf(weight[0]), fabsf(weight[1])), fabsf(weight[2])) / float_max(sum, 1e-30f);
 }
 
 static uint32_t cast_but(const ray_scene *s, uint32_t skip, vec origin, vec direction, float *distance) {
-    query q = {.skip = skip};
-    struct RTCRayHit r = {.ray = {.org_x = origin.x,
-                                  .org_y = origin.y,
-                                  .org_z = origin.z,
-                                  .dir_x = direction.x,
-                                  .dir_y = direction.y,
-                                  .dir_z = direction.z,
-                                  .tfar = *distance,
-                                  .mask = ~0u},
-                          .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
-#if VIT_EMBREE == 4
-    struct RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    rtcInitRayQueryContext(&q.context);
-    arguments.context = &q.context;
-    arguments.filter = skip != RAY_NOTHING ? skip_one : NULL;
-    rtcIntersect1(s->scene, &r, &arguments);
-#else
-    rtcInitIntersectContext(&q.context);
-    q.context.filter = skip != RAY_NOTHING ? skip_one : NULL;
-    rtcIntersect1(s->scene, &q.context, &r);
-#endif
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    const rule r = {s, skip};
+    triangle_hit h;
+    if (!triangle_rays_nearest(&s->rays, vec3_of(origin), vec3_of(direction), *distance,
+                               s->holes || skip != RAY_NOTHING ? is_there : NULL, &r, &h))
         return RAY_NOTHING;
-    *distance = r.ray.tfar;
-    const float cosine = dot(triangle_normal(s->g->triangles + r.hit.primID), direction);
-    if (fabsf(cosine) < GRAZING || fminf(r.hit.u, fminf(r.hit.v, 1.0f - r.hit.u - r.hit.v)) < EDGE)
+    *distance = h.distance;
+    const float cosine = dot(triangle_normal(s->g->triangles + h.triangle), direction);
+    if (fabsf(cosine) < GRAZING || least_share(h.weight) < EDGE)
         return RAY_UNSURE;
-    return 2 * r.hit.primID + (cosine > 0.0f);
+    return 2 * h.triangle + (cosine > 0.0f);
 }
 
 static bool is_occluded(const ray_scene *s, vec origin, vec direction, float distance) {
-    struct RTCRay r = {.org_x = origin.x,
-                       .org_y = origin.y,
-                       .org_z = origin.z,
-                       .dir_x = direction.x,
-                       .dir_y = direction.y,
-                       .dir_z = direction.z,
-                       .tfar = distance,
-                       .mask = ~0u};
-#if VIT_EMBREE == 4
-    rtcOccluded1(s->scene, &r, NULL);
-#else
-    embree_context context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(s->scene, &context, &r);
-#endif
-    return r.tfar < 0.0f;
+    const rule r = {s, RAY_NOTHING};
+    return triangle_rays_any(&s->rays, vec3_of(origin), vec3_of(direction), distance, s->holes ? is_there : NULL, &r);
 }
 
 uint32_t ray_scene_cast(const ray_scene *s, vec origin, vec direction, float *distance) {

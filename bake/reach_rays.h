@@ -3,7 +3,7 @@
 #define VIT_BAKE_REACH_RAYS_H
 
 #include "bvh.h"
-#include <stdbool.h>
+#include "triangle_rays.h"
 
 #define RAY_NOTHING 0xffffffffu /* no side: the ray met nothing in reach */
 #define RAY_UNSURE 0xfffffffeu  /* it met something, but grazed it */
@@ -13,11 +13,11 @@ typedef struct vec {
 } vec;
 
 typedef struct ray_scene {
-    struct RTCDeviceTy *device;
-    struct RTCSceneTy *scene;
+    triangle_rays rays;
     const geometry *g;
     const model *m;
-    bool matt; /* all of it: what a ray finds first is where it ends */
+    bool holes; /* some of it is cut out */
+    bool matt;  /* all of it: what a ray finds first is where it ends */
 } ray_scene;
 
 /* What all rays of a side begin with. */

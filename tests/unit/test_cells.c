@@ -49,7 +49,7 @@ static fixture *make(void) {
             v[k] = 4.0f * lab_uniform(&random) - 2.0f;
         put_triangle(f->triangles + i, v);
     }
-    f->g = (geometry){f->triangles, f->attributes, 0.0f};
+    f->g = (geometry){f->triangles, f->attributes, 0.0f, 0.0f};
     assert_int_equal(cells_divide(&f->g, TRIANGLES, some_edge, f, &f->c, &why), VIT_OK);
     return f;
 }
@@ -276,7 +276,7 @@ static cells divided(const float v[9], uint32_t triangles, float edge) {
     assert_non_null(t);
     for (uint32_t i = 0; i < triangles; i++)
         put_triangle(t + i, v);
-    const geometry g = {t, NULL, 0.0f};
+    const geometry g = {t, NULL, 0.0f, 0.0f};
     cells c;
     vit_text why = {""};
     assert_int_equal(cells_divide(&g, triangles, fixed_edge, &edge, &c, &why), VIT_OK);
