@@ -1,6 +1,7 @@
 /* All textures with their mip levels in one sheet of words. Each level is filtered straight from the image: any size of image
  * is weighted by exact area, nothing but the sheet is held in memory, and errors do not add up from level to level. */
 #include "atlas.h"
+#include "strict_math.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -247,11 +248,6 @@ static void write_texture(const packing *p, const texture_key *key, const vit_te
     }
 }
 
-/* IEC 61966-2-1. */
-static double srgb_to_linear(double c) {
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
-}
-
 static vit_status out_of_memory(vit_text *why) {
     snprintf(why->text, sizeof why->text, "textures: out of memory");
     return VIT_FAILED;
@@ -272,7 +268,7 @@ static vit_status pack_textures(packing *p, atlas *out, vit_text *why) {
     if (!out->texels)
         return out_of_memory(why);
     for (int i = 0; i < 256; i++)
-        p->linear[i] = srgb_to_linear(i / 255.0);
+        p->linear[i] = srgb_linear(i / 255.0);
     for (uint32_t t = 0; t < out->texture_count; t++)
         write_texture(p, p->keys + t, out->textures + t, out);
     return VIT_OK;

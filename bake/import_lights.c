@@ -1,5 +1,6 @@
 #include "importer.h"
 #include "light_units.h"
+#include "strict_math.h"
 #include <assimp/camera.h>
 #include <assimp/cimport.h>
 #include <assimp/light.h>
@@ -53,7 +54,7 @@ static double vertical_fov(const importer *im, const struct aiCamera *c) {
     const double across = (double)c->mHorizontalFOV, aspect = (double)c->mAspect;
     double up = across;
     if (aspect > 0.0)
-        up = im->gltf && multiplies_by_aspect() ? across / aspect : 2.0 * atan(tan(0.5 * across) / aspect);
+        up = im->gltf && multiplies_by_aspect() ? across / aspect : 2.0 * strict_atan(strict_tan(0.5 * across) / aspect);
     const double degrees = up * 180.0 / PI;
     return degrees > 1.0 && degrees < 170.0 ? degrees : 0.0;
 }
@@ -75,7 +76,8 @@ bool import_node_camera(importer *im, const struct aiNode *node, const double wo
             continue;
         }
         if (c->mOrthographicWidth > 0.0f)
-            import_warn(im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees", c->mName.data);
+            import_warn(im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
+                        c->mName.data);
         for (int k = 0; k < 3; k++)
             camera.target[k] = camera.eye[k] + forward[k];
         take_names(node, camera.name, camera.parent);

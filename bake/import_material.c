@@ -1,5 +1,6 @@
 #include "importer.h"
 #include "light_units.h"
+#include "strict_math.h"
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <math.h>
@@ -38,7 +39,7 @@ static void read_transform(material_use *use, const struct aiMaterial *ai, enum 
     if (!import_floats(ai, _AI_MATKEY_UVTRANSFORM_BASE, type, 0, t, 5))
         return;
     const double rotation = -(double)t[4], sx = (double)t[2], sy = (double)t[3];
-    const double s = sin(rotation), c = cos(rotation);
+    const double s = strict_sin(rotation), c = strict_cos(rotation);
     const double ox = (double)t[0] - 0.5 * sx * (-c + s + 1.0);
     const double oy = 0.5 * sy * (s + c - 1.0) + 1.0 - sy - (double)t[1];
     const double matrix[6] = {c * sx, s * sy, ox, -s * sx, c * sy, oy};

@@ -1,6 +1,7 @@
 /* What besides matt reflection a mesh file's material does: a Phong lobe, a mirror, glass. */
 #include "glossy.h"
 #include "importer.h"
+#include "strict_math.h"
 #include <assimp/GltfMaterial.h>
 #include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
@@ -187,8 +188,9 @@ static void read_glass(material_use *use, const struct aiMaterial *ai, const flo
         use->m.specular[i] = mean[i];
         /* Of white light `color` is left after `distance`; infinitely far if the file states none. */
         if (use->m.kind == VIT_GLASS && distance > 0.0f && isfinite(distance))
-            use->m.absorption[i] =
-                color[i] > 0.0f ? import_clamp(-logf(color[i]) / distance, MOST_ABSORPTION) : MOST_ABSORPTION;
+            use->m.absorption[i] = color[i] > 0.0f
+                                       ? import_clamp((float)-strict_log((double)color[i]) / distance, MOST_ABSORPTION)
+                                       : MOST_ABSORPTION;
     }
 }
 

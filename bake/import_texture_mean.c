@@ -1,4 +1,5 @@
 /* What a material without texels takes for a texture: the mean of them. */
+#include "strict_math.h"
 #include "importer.h"
 #include <stb/stb_image.h>
 #include <math.h>
@@ -11,11 +12,6 @@ typedef struct texture_mean {
     float mean[4];
 } texture_mean;
 
-static double linear_of(unsigned srgb) {
-    const double x = srgb / 255.0;
-    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-}
-
 /* Counts of each value first: 256 powers, and a sum that does not depend on the texels' order. */
 static void mean_of(const model_image *image, bool srgb, float mean[4]) {
     const size_t texels = (size_t)image->width * (size_t)image->height;
@@ -25,7 +21,7 @@ static void mean_of(const model_image *image, bool srgb, float mean[4]) {
         for (size_t i = 0; i < texels; i++)
             counts[image->rgba[4 * i + k]]++;
         for (unsigned v = 0; v < 256; v++)
-            sum += (double)counts[v] * (srgb && k < 3 ? linear_of(v) : v / 255.0);
+            sum += (double)counts[v] * (srgb && k < 3 ? srgb_linear(v / 255.0) : v / 255.0);
         mean[k] = (float)(sum / (double)texels);
     }
 }

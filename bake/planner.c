@@ -1,5 +1,6 @@
 #include "planner.h"
 #include "copies.h"
+#include "strict_math.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -155,7 +156,7 @@ static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
 /* kernels/METHODS.md, "Clusters" (16): slices as deep as they are wide. */
 static float slice_scale(const scene *s, const tracks *t) {
     double rows = (double)s->height / s->quality.tile;
-    return (float)(1.0 / log2(1.0 + 2.0 * t->tan_half_fov / rows));
+    return (float)(0.69314718055994531 / strict_log(1.0 + 2.0 * t->tan_half_fov / rows));
 }
 
 /* The grid of small view samples: cubes over the box of the model, with room for what rays leave surfaces by. */

@@ -1,5 +1,6 @@
 #include "scene_reader.h"
 #include "vitrine_pack.h"
+#include "strict_math.h"
 #include <math.h>
 #include <string.h>
 
@@ -30,8 +31,8 @@ static void sine_cosine(double degrees, double *sine, double *cosine) {
         *cosine = sines[(q + 1) & 3];
         return;
     }
-    *sine = sin(turn * pi / 180.0);
-    *cosine = cos(turn * pi / 180.0);
+    *sine = strict_sin(turn * pi / 180.0);
+    *cosine = strict_cos(turn * pi / 180.0);
 }
 
 /* translate * Rz * Ry * Rx * scale, 3 x 4. */

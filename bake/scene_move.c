@@ -10,7 +10,8 @@ bool scene_is_far(const model *m, double origin[3]) {
         far += center[k] * center[k];
     }
     half = sqrt(half);
-    const double step = exp2(ceil(log2(half)));
+    int exponent;
+    const double step = frexp(half, &exponent) == 0.5 ? half : ldexp(1.0, exponent);
     for (int k = 0; k < 3; k++)
         origin[k] = floor(center[k] / step + 0.5) * step;
     return sqrt(far) > SCENE_FAR * half;

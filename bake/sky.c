@@ -7,6 +7,7 @@
 #include "image_file.h"
 #include "radiance.h"
 #include "sobol.h"
+#include "strict_math.h"
 #include <math.h>
 #include <stb/stb_image.h>
 #include <stdbool.h>
@@ -137,7 +138,7 @@ static bool part(double first, double second, double *x) {
 sky_ray sky_choose(const sky *s, double x, double y) {
     if (s->size == 0) {
         const double z = 1.0 - 2.0 * y, r = sqrt(fmax(1.0 - z * z, 0.0));
-        const vec3 d = {(float)(r * cos(2.0 * PI * x)), (float)z, (float)(r * sin(2.0 * PI * x))};
+        const vec3 d = {(float)(r * strict_cos(2.0 * PI * x)), (float)z, (float)(r * strict_sin(2.0 * PI * x))};
         return (sky_ray){vec3_unit(d), vec3_scale(vec3_load(s->background), (float)(4.0 * PI))};
     }
     size_t column = 0, row = 0;
@@ -190,9 +191,9 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
     for (int y = 0; y < height; y++)
         for (uint32_t j = 0; j < parts; j++) {
             const double upper = PI * ((double)y * parts + j) / rows, lower = PI * ((double)y * parts + j + 1.0) / rows;
-            const double middle = 0.5 * (upper + lower), sine = sin(middle),
-                         solid = (cos(upper) - cos(lower)) * 2.0 * PI / columns;
-            const float height_of = (float)cos(middle);
+            const double middle = 0.5 * (upper + lower), sine = strict_sin(middle),
+                         solid = (strict_cos(upper) - strict_cos(lower)) * 2.0 * PI / columns;
+            const float height_of = (float)strict_cos(middle);
             for (int x = 0; x < width; x++) {
                 const float *c = rgb + 3 * ((size_t)y * (size_t)width + (size_t)x);
                 for (int k = 0; k < 3; k++)
@@ -200,7 +201,7 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
                 for (uint32_t i = 0; i < parts; i++) {
                     const double angle = 2.0 * PI * (((double)x * parts + i + 0.5) / columns - 0.5) - rotate;
                     float u, v;
-                    to_square((vec3){(float)(sine * sin(angle)), height_of, (float)(-sine * cos(angle))}, &u, &v);
+                    to_square((vec3){(float)(sine * strict_sin(angle)), height_of, (float)(-sine * strict_cos(angle))}, &u, &v);
                     const int column = (int)((u * 0.5f + 0.5f) * (float)size), row = (int)((v * 0.5f + 0.5f) * (float)size);
                     const size_t at = (size_t)(row < (int)size ? row : (int)size - 1) * size +
                                       (size_t)(column < (int)size ? column : (int)size - 1);
@@ -269,10 +270,8 @@ static const char *decode(const uint8_t *bytes, int size, double scale, int *wid
     } else {
         uint8_t *codes = stbi_load_from_memory(bytes, size, width, height, &channels, 3);
         *rgb = codes ? malloc(values * sizeof **rgb) : NULL;
-        for (size_t i = 0; *rgb && i < values; i++) {
-            const double c = codes[i] / 255.0;
-            (*rgb)[i] = (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)); /* IEC 61966-2-1 */
-        }
+        for (size_t i = 0; *rgb && i < values; i++)
+            (*rgb)[i] = (float)srgb_linear(codes[i] / 255.0);
         stbi_image_free(codes);
     }
     for (size_t i = 0; *rgb && i < values; i++) {
@@ -288,7 +287,9 @@ vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit
     int size, width = 0, height = 0;
     float *rgb = NULL;
     uint8_t *bytes = image_file_read(file, &size);
-    const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : file_trouble(file) ? file_trouble(file) : "is empty or cannot be read";
+    const char *wrong = bytes                ? decode(bytes, size, scale, &width, &height, &rgb)
+                        : file_trouble(file) ? file_trouble(file)
+                                             : "is empty or cannot be read";
     vit_status status = VIT_BAD_INPUT;
     *out = (sky){0};
     if (wrong)

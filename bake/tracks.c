@@ -1,6 +1,7 @@
 #include "tracks.h"
 #include "curves.h"
 #include "names.h"
+#include "strict_math.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -71,7 +72,7 @@ static bool make_camera(const scene *s, const view *v, double up[3], vit_camera 
     }
     (void)normalize(right);
     cross(right, forward, up);
-    const double pixel = 2.0 * tan(v->fov * PI / 360.0) / (double)s->height; /* at distance 1 */
+    const double pixel = 2.0 * strict_tan(v->fov * PI / 360.0) / (double)s->height; /* at distance 1 */
     const double exposure = s->exposure_fixed > 0.0 ? s->exposure_fixed : v->exposure;
     *out = (vit_camera){.exposure = (float)(s->exposure_factor > 0.0 ? exposure * s->exposure_factor : exposure)};
     for (int i = 0; i < 3; i++) {
@@ -145,13 +146,13 @@ static double box_center(const model *m, double center[3]) {
 /* At a distance from which the box's bounding sphere fits the narrower side of the image, 20 degrees up. */
 static void automatic_view(const scene *s, const model *m, int frame, view *v) {
     const double radius = box_center(m, v->target);
-    const double tall = tan(automatic_fov * PI / 360.0), wide = tall * (double)s->width / (double)s->height;
+    const double tall = strict_tan(automatic_fov * PI / 360.0), wide = tall * (double)s->width / (double)s->height;
     const double least = tall < wide ? tall : wide;
     const double distance = radius * sqrt(1.0 + least * least) / least;
     const double angle = 2.0 * PI * (double)frame / (double)s->frames, rise = 20.0 * PI / 180.0;
-    v->eye[0] = v->target[0] + distance * cos(rise) * sin(angle);
-    v->eye[1] = v->target[1] + distance * sin(rise);
-    v->eye[2] = v->target[2] + distance * cos(rise) * cos(angle);
+    v->eye[0] = v->target[0] + distance * strict_cos(rise) * strict_sin(angle);
+    v->eye[1] = v->target[1] + distance * strict_sin(rise);
+    v->eye[2] = v->target[2] + distance * strict_cos(rise) * strict_cos(angle);
     v->up[0] = v->up[2] = 0.0;
     v->up[1] = 1.0;
     v->fov = automatic_fov;
@@ -169,7 +170,7 @@ static bool too_large_for_automatic(const model *m) {
 static void automatic_light(const scene *s, const model *m, int frame, scene_light_key *key) {
     const double radius = box_center(m, key->position);
     const double angle = 2.0 * PI * (double)frame / (double)s->frames + PI / 5.0;
-    const double offset[3] = {1.6 * radius * sin(angle), 1.1 * radius, 1.6 * radius * cos(angle)};
+    const double offset[3] = {1.6 * radius * strict_sin(angle), 1.1 * radius, 1.6 * radius * strict_cos(angle)};
     for (int i = 0; i < 3; i++) {
         key->target[i] = key->position[i];
         key->position[i] += offset[i];
@@ -206,7 +207,7 @@ static vit_status make_cameras(const scene *s, const model *m, tracks *out, vit_
             status = refuse(s, 0, why, "camera: 'fov' must be in (1, 170), got %g in frame %d", v.fov, f);
         else if (!make_camera(s, &v, up, &out->cameras[f]))
             status = refuse(s, 0, why, "camera: 'eye' and 'target' meet in frame %d", f);
-        out->tan_half_fov = fmax(out->tan_half_fov, tan(v.fov * PI / 360.0));
+        out->tan_half_fov = fmax(out->tan_half_fov, strict_tan(v.fov * PI / 360.0));
     }
     curves_free(&path);
     return status;
@@ -260,8 +261,8 @@ static bool make_light(const model *m, const scene_light *light, const scene_lig
     if (light->range > 0.0)
         out->inv_range2 = (float)(1.0 / (light->range * light->range));
     if (light->kind == VIT_LIGHT_SPOT) {
-        const double inner = cos(light->inner * PI / 180.0);
-        const double outer = light->outer < 90.0 ? cos(light->outer * PI / 180.0) : 0.0;
+        const double inner = strict_cos(light->inner * PI / 180.0);
+        const double outer = light->outer < 90.0 ? strict_cos(light->outer * PI / 180.0) : 0.0;
         const double scale = 1.0 / fmax(0.001, inner - outer); /* KHR_lights_punctual */
         out->kind = VIT_LIGHT_SPOT;
         out->cos_outer = (float)outer;
@@ -309,7 +310,8 @@ static vit_status make_track(const scene *s, const model *m, int index, tracks *
     if (light.use[0] && !used_light(m, &s->lights[index], &light, &key)) {
         char names[NAMES_TEXT];
         names_offer(light.use, light_name, m, m->light_count, names);
-        return refuse(s, light.line, why, "light %d: no mesh has a point, spot or directional light '%.60s'%s", index + 1, light.use, names);
+        return refuse(s, light.line, why, "light %d: no mesh has a point, spot or directional light '%.60s'%s", index + 1,
+                      light.use, names);
     }
     if (light.kind == VIT_LIGHT_DIRECTIONAL && (light.window || s->lights[index].range > 0.0))
         return refuse(s, light.line, why, "light %d: 'range' and 'falloff' are for point and spot lights", index + 1);
