@@ -169,6 +169,18 @@ static vit_status make_kernel(vit_opencl *d, uint32_t pass, uint32_t asked_group
     return asked_group > d->most[pass] ? refuse_group(name, asked_group, d->most[pass], why) : VIT_OK;
 }
 
+/* PoCL fails to build what it builds elsewhere where it cannot write; it does not say so. */
+static void say_where_pocl_writes(const vit_opencl *d, vit_text *why) {
+    cl_platform_id platform;
+    char name[128] = "";
+    if (clGetDeviceInfo(d->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL) == CL_SUCCESS)
+        clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name, name, NULL);
+    const size_t n = strlen(why->text);
+    if (strstr(name, "Portable Computing Language"))
+        snprintf(why->text + n, sizeof why->text - n,
+                 "; PoCL compiles in its cache: set POCL_CACHE_DIR to a folder with room, or take the device host");
+}
+
 static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group, vit_text *why) {
     char options[4096];
     cl_int e;
@@ -180,6 +192,7 @@ static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group
     e = clBuildProgram(d->program, 1, &d->id, options, NULL, NULL);
     if (e != CL_SUCCESS) {
         failed(why, "clBuildProgram", e);
+        say_where_pocl_writes(d, why); /* first: a log may be long */
         if (clGetProgramBuildInfo(d->program, d->id, CL_PROGRAM_BUILD_LOG, sizeof d->log, d->log, NULL) == CL_SUCCESS) {
             size_t n = strlen(why->text);
             snprintf(why->text + n, sizeof why->text - n, ": %s", d->log);

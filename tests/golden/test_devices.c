@@ -134,6 +134,23 @@ static void a_full_disk_plays_on_host(void **state) {
     (void)rmdir(FOLDER "/full");
 }
 
+/* Who asks for PoCL is told how to mend it, by the tools that play nothing else, too. */
+static void the_baker_says_what_keeps_pocl_from_compiling(void **state) {
+    (void)state;
+    if (!has_pocl())
+        return;
+    (void)mkdir(FOLDER "/none", 0777);
+    if (!mount_small(FOLDER "/none", "size=16k")) {
+        print_message("may not mount here: a full disk is not tried\n");
+        return;
+    }
+    tool(&r, "POCL_CACHE_DIR=" FOLDER "/none " TOOL_BAKE " " TEST_SCENES
+             "/furnace.cfg --size 16x12 --frames 1 --no-check --device pocl --quiet -o " FOLDER "/none.vit");
+    (void)umount(FOLDER "/none");
+    (void)rmdir(FOLDER "/none");
+    tool_refuses(&r, "vitrine-bake", VIT_FAILED, "set POCL_CACHE_DIR to a folder with room");
+}
+
 static void a_read_only_disk_plays_on_host_whatever_is_in_the_cache(void **state) {
     (void)state;
     if (!has_pocl())
@@ -238,6 +255,7 @@ int main(void) {
         cmocka_unit_test(a_home_that_is_not_set_is_no_failure),
         cmocka_unit_test(files_that_may_not_grow_play_on_host),
         cmocka_unit_test(a_full_disk_plays_on_host),
+        cmocka_unit_test(the_baker_says_what_keeps_pocl_from_compiling),
         cmocka_unit_test(a_read_only_disk_plays_on_host_whatever_is_in_the_cache),
         cmocka_unit_test(without_a_driver_it_plays_on_host_and_says_what_makes_a_device),
         cmocka_unit_test(the_summary_and_the_report_name_the_device),
