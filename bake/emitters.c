@@ -13,6 +13,7 @@
 #define EYES_MOST 64u        /* cameras of the path that are asked what they see, and rays of each */
 #define OPEN_STEPS 4         /* weights are 1, 1/2, 1/4, 1/8: no photon is more than 8 times as strong as it would be */
 #define CLASSES (6 * OPEN_STEPS)
+#define NEAR_DISCS 2.0 /* of a point, in area: at its very edge one point is too much of the light */
 
 static vec3 side_normal(const photon_scene *s, uint32_t side) {
     const vit_triangle *t = s->triangles + side / 2;
@@ -442,7 +443,7 @@ void emitters_near(const emitters *e, uint32_t samples, vit_material *materials)
     for (uint32_t i = 0; i < e->count; i++) {
         const uint32_t m = e->scene.attributes[e->side[i] / 2].material & VIT_MATERIAL_INDEX;
         const double area = e->sum[e->count - 1] / (samples * radiance_sum(materials + m)) * ldexp(1.0, e->step[i]);
-        materials[m].near2 = float_max(materials[m].near2, (float)(area * (double)PHOTON_INV_PI));
+        materials[m].near2 = float_max(materials[m].near2, (float)(NEAR_DISCS * area * (double)PHOTON_INV_PI));
     }
 }
 

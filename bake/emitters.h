@@ -34,8 +34,8 @@ typedef struct emitter_place {
 /* The point for 0 < x, y < 1: even over the unit square gives the density. Not for an empty set. */
 emitter_place emitters_place(const emitters *e, double x, double y);
 
-/* How near to each material that shines `samples` points a set are too far apart: as near as the radius of the disc that the
- * point of its side of fewest stands for. Before emitters_sets(); `materials` are e->scene's, near2 0. */
+/* How near to each material that shines `samples` points a set are too far apart: as near as the radius of twice the disc
+ * that the point of its side of fewest stands for. Before emitters_sets(); `materials` are e->scene's, near2 0. */
 void emitters_near(const emitters *e, uint32_t samples, vit_material *materials);
 
 /* VIT_PATTERNS sets of `samples` points, section EMIT's first part. VIT_FAILED: out of memory. */

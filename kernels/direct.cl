@@ -195,26 +195,39 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
 #endif
 
 #if VIT_WITH(AREA_LIGHTS)
-/* Adds the light of surfaces nearer than vit_material.near2, where points are too far apart: as many rays by the cosine as a set has points find
- * it. `set`: the samples' sets. Points leave out just what is added here. */
-static inline void lit_by_near(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, li set, li own, lit_sample *s WORK_PASSED)
+#define NEAR_RAYS 64u    /* at least: a strip of light beside a lamp is found by few of them */
+#define NEAR_SHARE 0.01f /* of a white sky's light, that a point must not stand for alone */
+
+/* Lanes for which a point of any set would be much of all light: those whose irradiance from a white sky of the lamp's radiance it is more than
+ * NEAR_SHARE of. The same for all sets, so that which of them a pixel has changes nothing but noise. */
+static inline li lit_near(global const vit_emitter *emitters, uint points, const lit_sample *s, float *far2)
 {
     li near = L_I(0);
-    float far2 = 0;
-    for (uint i = 0; i < VIT_PATTERNS * points; i++) { /* a surface within its distance has a point within twice that */
-        lv3 to = lv3_sub(lv3_load(emitters[i].position), s->p);
-        near |= L_LT(lv3_dot(to, to), L_F(4.0f * emitters[i].near2));
-        far2 = vit_max(far2, emitters[i].near2);
+    *far2 = 0;
+    for (uint i = 0; i < VIT_PATTERNS * points; i++) {
+        global const vit_emitter *q = emitters + i;
+        lv3 to = lv3_sub(lv3_load(q->position), s->p);
+        lf d2 = lv3_dot(to, to);
+        *far2 = vit_max(*far2, q->near2);
+        if (!l_any(L_LT(d2, L_F(4.0f * q->near2)))) /* a surface within its distance has a point within twice that */
+            continue;
+        lf facing = l_max(lv3_dot(s->n, to), L_F(0)) * l_max(-lv3_dot(lv3_load(q->normal), to), L_F(0));
+        near |= L_GT(facing * q->radius2, d2 * d2 * NEAR_SHARE) & L_LT(d2, L_F(4.0f * q->near2));
     }
-    near &= s->hit;
-    if (!l_any(near))
-        return;
+    return near & s->hit;
+}
+
+/* Adds the light of surfaces nearer than vit_material.near2 to lanes of `near`, where points are too far apart: rays by the cosine find it.
+ * `set`: the samples' sets. Points leave out just what is added here. */
+static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own, li near, float far2, lit_sample *s WORK_PASSED)
+{
     global const float *normals = (global const float *)triangles, *lights = (global const float *)materials;
     const int triangle_words = (int)(sizeof(vit_triangle) / sizeof(float)), material_words = (int)(sizeof(vit_material) / sizeof(float)),
               words = (int)(sizeof(vit_attributes) / sizeof(uint));
-    const float e = vit_div(VIT_PI, (float)points), far = vit_sqrt(far2);
-    for (uint i = 0; i < points; i++) {
-        lu number = L_AS_UINT(set * (int)points) + L_U(i); /* a plane sequence (Roberts 2018) over all sets */
+    const uint rays = max(points, NEAR_RAYS);
+    const float e = vit_div(VIT_PI, (float)rays), far = vit_sqrt(far2);
+    for (uint i = 0; i < rays; i++) {
+        lu number = L_AS_UINT(set * (int)rays) + L_U(i); /* a plane sequence (Roberts 2018) over all sets */
         lv3 d = ray_cosine(s->n, l_unit_float(number * 0xc13fa9a9u + 0x80000000u), l_unit_float(number * 0x91e10da5u + 0x80000000u));
         ray_packet r = ray_make(s->p, d);
         lf t = L_F(far);
@@ -245,10 +258,14 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
-    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride;
+    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride, near = L_I(0);
 #if VIT_WITH(AREA_LIGHTS)
-    if (!sky)
-        lit_by_near(RAY_SCENE, emitters, points, set, own, s WORK_PASS);
+    if (!sky) {
+        float far2;
+        near = lit_near(emitters, points, s, &far2);
+        if (l_any(near))
+            lit_by_near(RAY_SCENE, points, set, own, near, far2, s WORK_PASS);
+    }
 #endif
     for (uint i = 0; i < points; i++, at += stride) {
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
@@ -264,7 +281,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
             e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
-            e = l_sel(L_LT(d2, L_GATHER(lf, p + 7, at)), L_F(0), e);
+            e = l_sel(near & L_LT(d2, L_GATHER(lf, p + 7, at)), L_F(0), e);
         }
         li lit = s->hit & L_GT(e, L_F(0));
         if (!l_any(lit))

@@ -66,7 +66,10 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
-        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0)), L_U(VIT_SAMPLE_NOTHING)), albedo + first);
+        lu flags = l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0));
+        if (VIT_EFFECT_AREA_LIGHTS && VIT_EFFECT_EMISSION)
+            flags = l_sel_u(L_GT(s.emission.x + s.emission.y + s.emission.z, L_F(0)) & ~s.dark, L_U(VIT_SAMPLE_LAMP), flags);
+        L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | flags, L_U(VIT_SAMPLE_NOTHING)), albedo + first);
         if (VIT_EFFECT_GLOSS) {
             L_STORE(l_sel_u(hit, l_encode_albedo(s.shine.specular), L_U(0)), gloss + first);
             L_STORE(l_sel_u(hit, L_AS_UINT(s.shine.exponent), L_U(0)), gloss + n + first);

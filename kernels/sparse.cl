@@ -141,14 +141,34 @@ kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global fl
 
 #endif
 
-/* How far a coarse sample lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from their tangent
- * plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step metres there. */
-static inline lf sparse_agreement(global const float *c, lv3 p, lv3 s, lf per_step)
+/* How far a sample at q of normal t lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from their
+ * tangent plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step metres there.
+ * *off: the distance, m. */
+static inline lf sparse_agreement(lv3 q, lv3 t, lv3 p, lv3 s, lf per_step, lf *off)
 {
-    lf off = lv3_dot(lv3_sub(p, lv3_load(c + 3)), s) * per_step, cosine = l_max(lv3_dot(s, lv3_load(c + 6)), L_F(0));
+    *off = lv3_dot(lv3_sub(p, q), s);
+    lf steps = *off * per_step, cosine = l_max(lv3_dot(s, t), L_F(0));
     cosine *= cosine;
     cosine *= cosine;
-    return l_max(fma(-off, off, L_F(1)), L_F(0)) * (cosine * cosine);
+    return l_max(fma(-steps, steps, L_F(1)), L_F(0)) * (cosine * cosine);
+}
+
+/* Light between a lamp and a surface close to it changes within their distance, which may be much less than a step: where a sample
+ * agrees with one that is a lamp while it is none, or the other way round, but lies beside its plane, it is estimated after all. A
+ * lamp in the very plane of its ceiling has no gap. */
+#define SPARSE_FLAT 4.0f /* ray_offsets off the plane that do not count: what rounding makes of it */
+
+/* Lanes of samples marked `mark` that lie across such a gap from a sample marked `other`. */
+static inline li sparse_gap(global const vit_scene *scene, li mark, li other, lf agreement, lf off)
+{
+    float flat = vit_max(scene->ray_offset * SPARSE_FLAT, scene->grid_step * 2.0f);
+    return L_NE(mark, other) & L_GT(agreement, L_F(0)) & L_GT(fabs(off), L_F(flat));
+}
+
+/* -1 where samples are lamps. */
+static inline li sparse_lamps(lu albedo)
+{
+    return L_NE(L_AS_INT(albedo & VIT_SAMPLE_LAMP), L_I(0)) & L_EQ(L_AS_INT(albedo & VIT_SAMPLE_DARK), L_I(0));
 }
 
 /* Number of the block x, y of the picture, or VIT_NONE beyond it. */
@@ -164,8 +184,8 @@ static inline uint sparse_block(global const vit_scene *scene, uint x, uint y)
 /* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
  * and no light yet. */
 kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
-                        global const float *position, global const uint *normal, ESTIMATE_BAKED, global const float *coarse,
-                        global float *indirect, global uint *flags)
+                        global const float *position, global const uint *normal, global const uint *albedo, ESTIMATE_BAKED,
+                        global const float *coarse, global float *indirect, global uint *flags)
 {
     uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
     if (block >= n / 16)
@@ -177,13 +197,17 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
     uint around[4];
     for (uint k = 0; k < 4; k++)
         around[k] = sparse_block(scene, bx + (k & 1), by + (k >> 1));
+    uint lamps = 0; /* bit k: sample k of the block is a lamp; coarse samples may miss it */
+    for (uint at = 0; VIT_EFFECT_AREA_LIGHTS && at < 16; at += VIT_LANES)
+        lamps |= l_bits(sparse_lamps(L_LOAD(albedo + block * 16 + at))) << at;
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
-        lf weights = L_F(0), x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
+        li lamp = -((L_I((int)lamps) >> pixel) & 1), apart = L_I(0);
+        lf weights = L_F(0), off, x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
                 uint from = around[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)], k = cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW;
@@ -191,15 +215,21 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
                 global const float *c = coarse + ((size_t)from * SPARSE_BLOCK + k) * SPARSE_FLOATS;
                 if (from == VIT_NONE || !l_any(has & L_GT(tent, L_F(0))) || c[0] < 0)
                     continue;
-                lf w = tent * sparse_agreement(c, p, s, per_step);
-                if (VIT_EFFECT_ZONES) { /* the same photons count for both */
-                    uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
+                lf w = tent * sparse_agreement(lv3_load(c + 3), lv3_load(c + 6), p, s, per_step, &off);
+                uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
+                if (VIT_EFFECT_AREA_LIGHTS)
+                    apart |= sparse_gap(scene, lamp, sparse_lamps(L_U(albedo[sample])), w, off);
+                if (VIT_EFFECT_ZONES) /* the same photons count for both */
                     w = l_sel(L_EQ(own.accept, L_I((int)accept[sample])), w, L_F(0));
-                }
                 sum = lv3_along(sum, lv3_load(c), w);
                 weights += w;
             }
-        li good = has & L_GE(weights, L_F(SPARSE_LEAST));
+        if (VIT_EFFECT_AREA_LIGHTS && lamps != 0 && lamps != 0xffffu) { /* the block's first lamp, for those that it is none of */
+            li first_lamp = L_I((int)(block * 16 + 31u - (uint)clz(lamps & (~lamps + 1u))));
+            lf w = sparse_agreement(sample_position_of(scene, position, first_lamp), l_decode_normal(l_gather_u(normal, first_lamp)), p, s, per_step, &off);
+            apart |= sparse_gap(scene, lamp, L_I(-1), w, off);
+        }
+        li good = has & L_GE(weights, L_F(SPARSE_LEAST)) & ~apart;
         lf scale = l_sel(good, l_div(1.0f, l_max(weights, L_F(SPARSE_LEAST))), L_F(0));
         lv3_store_planes(estimate_normalise(&own, lv3_scale(sum, scale)), indirect, n, first);
         flagged |= l_bits(has & ~good) << at;

@@ -79,8 +79,8 @@
     X(estimate_sparse, ON(SPARSE), EACH, PER_COARSE, ONCE, W(coarse),                                                         \
       ARGS_SPARSE, B(coarse), ARGS_WORK)                                                                                      \
     X(interpolate, ON(SPARSE), EACH, PER_BLOCK, ONCE, W(indirect) | W(flags),                                                 \
-      B(scene), B(cameras), V(frame), B(keys), B(position), B(normal), B(accept), B(inverse_area), B(coarse),                 \
-      B(indirect), B(flags))                                                                                                  \
+      B(scene), B(cameras), V(frame), B(keys), B(position), B(normal), B(albedo), B(accept), B(inverse_area),                 \
+      B(coarse), B(indirect), B(flags))                                                                                       \
     X(estimate_rest, ON(SPARSE), EACH, PER_REST, ONCE, W(indirect),                                                           \
       ARGS_SPARSE, B(flags), B(indirect), ARGS_WORK)                                                                          \
     X(dots_clear, ON_DOTS, FIRST, PER_PIXEL, ONCE, W(dots),                                                                   \

@@ -5,6 +5,7 @@
  *  - planes of samples, masks and records that a pass walks over count whole, padding and empty slots included;
  *  - records that are looked up count once a lookup: triangle, attributes and material at a hit, four texels a texture lookup,
  *    index and 28 bytes of a photon a test against a node, index and photon (or bucket) an evaluation;
+ *  - a sample looks for near area lights among the points of all sets (kernels/direct.cl, lit_near);
  *  - traversal of the BVH counts nothing: its order is the packets' own. Nor do counters, the bits that samples set, the chunks
  *    of the root's list, the pixels of dots.
  * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
@@ -16,7 +17,7 @@
     X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples +                                \
                    z->cell * w[VIT_WORK_surface_points] + HITS)                                                                \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
-    X(area_light, (LIT + sizeof(vit_emitter) * z->area_samples) * z->samples)                                                  \
+    X(area_light, (LIT + sizeof(vit_emitter) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                             \
     X(sky_light,                                                                                                               \
       (4 + z->position + 4 + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) * z->samples)        \
     X(sky_filter, (z->position + 4 + 4 + z->gloss / 2 + z->skylight + 12 + 12) * z->samples)                                   \
@@ -35,7 +36,7 @@
     X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])  \
     X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])       \
     X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
-    X(interpolate, (4 + z->position + 4 + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)                       \
+    X(interpolate, (4 + z->position + 4 + z->lamps + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)            \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
     X(photon_dots, sizeof(vit_photon) * z->photons)                                                                            \
@@ -63,6 +64,7 @@ typedef struct sizes {
     uint64_t activate;             /* bytes a block of samples: active, edges, split */
     uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
+    uint64_t lamps;    /* bytes a sample: whether it is a lamp */
     uint64_t skylight; /* bytes a sample: of the sky's irradiance, and of what the lobe reflects of it */
     uint64_t zones, baked,
         cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
@@ -116,6 +118,7 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
     z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.gloss ? 4u : 0u);
     z.area_samples = s->area_samples;
     z.sky_samples = s->sky_samples;
+    z.lamps = l->effects & ON(AREA_LIGHTS) ? 4 : 0;
     z.skylight = z.gloss ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);

@@ -16,16 +16,20 @@ enum { SIDE = 64, FLOATS = 4 * SIDE * SIDE };
 
 static const double half[2] = {0.4, 0.25}; /* of the lamp, m */
 
+static void write_lamp(scene_lab *l, const char *name, double height) {
+    FILE *f = scene_lab_create(l, name);
+    (void)fprintf(f,
+                  "mtllib soft.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nv %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\n"
+                  "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 5 6 7 8\n",
+                  -half[0], height, -half[1], half[0], height, -half[1], half[0], height, half[1], -half[0], height, half[1]);
+    (void)fclose(f);
+}
+
 static void write_scenes(scene_lab *l) {
     FILE *f = scene_lab_create(l, "soft.mtl");
     (void)fprintf(f, "newmtl floor\nKd %g %g %g\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n", ALBEDO, ALBEDO, ALBEDO);
     (void)fclose(f);
-    f = scene_lab_create(l, "lamp.obj");
-    (void)fprintf(f,
-                  "mtllib soft.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nv %g %g %g\nv %g %g %g\nv %g %g %g\nv %g %g %g\n"
-                  "usemtl floor\nf 4 3 2 1\nusemtl lamp\nf 5 6 7 8\n",
-                  -half[0], HEIGHT, -half[1], half[0], HEIGHT, -half[1], half[0], HEIGHT, half[1], -half[0], HEIGHT, half[1]);
-    (void)fclose(f);
+    write_lamp(l, "lamp.obj", HEIGHT);
     f = scene_lab_create(l, "plane.obj");
     (void)fprintf(f, "mtllib soft.mtl\nv -9 0 -9\nv 9 0 -9\nv 9 0 9\nv -9 0 9\nusemtl floor\nf 4 3 2 1\n");
     (void)fclose(f);
@@ -45,14 +49,14 @@ static void render(scene_lab *l, const char *mesh, const char *more, int samples
     scene_lab_play(l, "direct", pixels, FLOATS);
 }
 
-/* Irradiance of the lamp, of radiance 1, at (x, 0, z) facing up. */
-static double lamp_irradiance(double x, double z) {
+/* Irradiance of the lamp at that height, of radiance 1, at (x, 0, z) facing up. */
+static double lamp_irradiance(double height, double x, double z) {
     static const int sign[4][2] = {{-1, -1}, {-1, 1}, {1, 1}, {1, -1}};
     double sum = 0;
     for (int i = 0; i < 4; i++) {
         const int *a = sign[i], *b = sign[(i + 1) % 4];
-        const double p[3] = {a[0] * half[0] - x, HEIGHT, a[1] * half[1] - z},
-                     q[3] = {b[0] * half[0] - x, HEIGHT, b[1] * half[1] - z};
+        const double p[3] = {a[0] * half[0] - x, height, a[1] * half[1] - z},
+                     q[3] = {b[0] * half[0] - x, height, b[1] * half[1] - z};
         const double n[3] = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
         const double across = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), along = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         sum += atan2(across, along) * n[1] / across;
@@ -73,7 +77,8 @@ static errors lamp_errors(scene_lab *l, int samples) {
     double square = 0, sum = 0, truth = 0;
     render(l, "lamp.obj", "", samples, pixels);
     for (int i = 0; i < SIDE * SIDE; i++) {
-        const double should = 5 * ALBEDO / PI * lamp_irradiance(place(i % SIDE), place(i / SIDE)), is = (double)pixels[4 * i];
+        const double should = 5 * ALBEDO / PI * lamp_irradiance(HEIGHT, place(i % SIDE), place(i / SIDE)),
+                     is = (double)pixels[4 * i];
         square += pow(is / should - 1, 2) / (SIDE * SIDE);
         sum += is;
         truth += should;
@@ -102,6 +107,43 @@ static void a_rectangle_lights_as_lambert_says(void **state) {
         points[i] = (catalogue_point){bounds[i].samples, e.rms};
     }
     catalogue_sweep("samples", "points on the lamp", "relative error of a pixel, rms", points, count);
+}
+
+/* The floor round a lamp that lies close over it, seen from above: light in the gap changes within its width, far less than
+ * points on the lamp are apart. Errors are relative to what a sky of the lamp's radiance gives. */
+static void a_lamp_close_over_its_floor_lights_as_lambert_says(void **state) {
+    static float pixels[FLOATS];
+    static const struct { double gap, rms, mean; /* m */ } bounds[] = {{0.01, 0.01, 0.001}, {0.05, 0.025, 0.001}};
+    for (size_t k = 0; k < sizeof bounds / sizeof *bounds; k++) {
+        const double gap = bounds[k].gap, eye = 3, edge = 0.6; /* m; what is seen of the floor */
+        write_lamp(*state, "close.obj", gap);
+        FILE *f = scene_lab_create(*state, "close.cfg");
+        (void)fprintf(f,
+                      "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"close.obj\"; } );\n"
+                      "camera: { near = 0.1; keys = ( { fov = %.9g; eye = [0.0, %.2f, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, "
+                      "0.0, -1.0]; } ); };\nquality: { photons = 0; };\n",
+                      SIDE, SIDE, 2 * atan(edge / eye) * 180 / PI, eye);
+        (void)fclose(f);
+        scene_lab_bake(*state, "close.cfg", "");
+        scene_lab_play(*state, "direct", pixels, FLOATS);
+        double square = 0, sum = 0;
+        int count = 0;
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const double x = edge * ((2 * (i % SIDE) + 1.0) / SIDE - 1), z = edge * ((2 * (i / SIDE) + 1.0) / SIDE - 1);
+            const double hidden = eye / (eye - gap); /* behind the lamp */
+            if (fabs(x) < half[0] * hidden && fabs(z) < half[1] * hidden)
+                continue;
+            const double error = (double)pixels[4 * i] / (5 * ALBEDO) - lamp_irradiance(gap, x, z) / PI;
+            square += error * error;
+            sum += error;
+            count++;
+        }
+        char what[96];
+        (void)snprintf(what, sizeof what, "lamp %g m over its floor: pixels beside it", gap);
+        catalogue_row("soft light", what, sqrt(square / count), bounds[k].rms, "of the lamp's radiance, rms");
+        (void)snprintf(what, sizeof what, "lamp %g m over its floor: mean beside it", gap);
+        catalogue_row("soft light", what, fabs(sum / count), bounds[k].mean, "of the lamp's radiance");
+    }
 }
 
 /* A box whose walls all shine: L + albedo L everywhere, in its corners too, where points are too far apart and rays find the
@@ -206,6 +248,7 @@ static int set_up(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_rectangle_lights_as_lambert_says),
+                                       cmocka_unit_test(a_lamp_close_over_its_floor_lights_as_lambert_says),
                                        cmocka_unit_test(a_box_whose_walls_shine_is_lit_alike_up_to_its_corners),
                                        cmocka_unit_test(an_even_sky_lights_a_plane_by_pi),
                                        cmocka_unit_test(a_picture_is_seen_where_it_is)};
