@@ -73,7 +73,7 @@ static void what_is_stated_stays(void **state) {
     write_scene(l, "quality: { auto = true; bounces = 5; photons = 3000; zones = false; };\n");
     bake(l, "--radius 0.6 --effective-area 0 --guiding 0");
     told(l, "quality \"auto\"", line); /* a warning: these settings cannot be right */
-    assert_non_null(strstr(line, "photons = 3000; bounces = 5; radius = 0.6; }"));
+    assert_non_null(strstr(line, "photons = 3000; radius = 0.6; bounces = 5; }"));
     assert_non_null(strstr(line, "warning"));
     write_scene(l, "quality: { photons = 3000; };\n"); /* a block says all itself */
     bake(l, "");
