@@ -69,7 +69,7 @@ static vec3 left(const finding *f, vec3 p, const arrival *a, float *mirror) {
             return (vec3){0.0f, 0.0f, 0.0f};
         *mirror = shine_at_glass(a->direction, at.normal, at.face, at.back, true, at.material->ior).mirror;
         part = vec3_scale(vec3_times(part, vec3_load(at.material->specular)), 1.0f - *mirror);
-        p = vec3_along(at.position, at.face, -2.0f * s->ray_offset);
+        p = at.beyond;
         way -= t;
     }
     return photon_rays_occluded(&f->rays, p, a->direction, way - 2.0f * s->ray_offset) ? (vec3){0.0f, 0.0f, 0.0f} : part;
@@ -141,7 +141,7 @@ static void trace(void *user, uint32_t slot) {
         const photon_surface s = photon_surface_at(&in->scene, o, d, t, triangle);
         const float u = throw(&random), v = throw(&random);
         if (VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) != VIT_MATTE) {
-            d = photons_shine_on(in->scene.ray_offset, &s, d, t, u, &o, &power);
+            d = photons_shine_on(&s, d, t, u, &o, &power);
             others++;
             continue;
         }

@@ -120,6 +120,14 @@ static vec3 normal_at(const vit_attributes *at, const float b[3], vec3 face) {
     return side == 0.0f ? face : vec3_scale(n, side < 0.0f ? -1.0f : 1.0f);
 }
 
+#define SURFACE_GRAZING 0.125f /* as in kernels/surface.clh */
+
+/* As surface_before() of kernels/surface.clh. */
+static vec3 surface_before(vec3 origin, vec3 direction, float distance, vec3 face, float cosine, float offset) {
+    const float back = float_min(offset / float_max(cosine, SURFACE_GRAZING), distance);
+    return vec3_along(vec3_along(origin, direction, distance - back), face, float_max(fmaf(-back, cosine, offset), 0.0f));
+}
+
 photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
                                    float cone, float b[3]) {
     const vit_triangle *t = s->triangles + triangle;
@@ -138,8 +146,10 @@ photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 dire
     r.face = vec3_scale(vec3_unit(n), r.back ? -1.0f : 1.0f);
     r.normal = normal_at(at, b, r.face);
     r.material = s->materials + (at->material & VIT_MATERIAL_INDEX);
-    r.position = vec3_along(vec3_along(origin, direction, distance), r.face, s->ray_offset);
-    r.albedo = albedo_at(s, triangle, b, doubled_area, cone * distance, fabsf(facing) / float_max(doubled_area, 1e-30f));
+    const float cosine = fabsf(facing) / float_max(doubled_area, 1e-30f);
+    r.position = surface_before(origin, direction, distance, r.face, cosine, s->ray_offset);
+    r.beyond = vec3_along(vec3_along(origin, direction, distance), r.face, -s->ray_offset);
+    r.albedo = albedo_at(s, triangle, b, doubled_area, cone * distance, cosine);
     return r;
 }
 

@@ -19,7 +19,8 @@ typedef struct photon_scene {
 } photon_scene;
 
 typedef struct photon_surface {
-    vec3 position; /* moved off the surface by ray_offset, to the side the ray came from */
+    vec3 position; /* on the ray, before the surface by ray_offset: surface_before() of kernels/surface.clh */
+    vec3 beyond;   /* as far beyond the surface */
     vec3 face;     /* unit geometric normal on that side */
     vec3 normal;   /* unit interpolated normal on that side */
     vec3 albedo;

@@ -56,7 +56,7 @@ static bool has_power(vec3 p) {
     return p.x + p.y + p.z > 0.0f;
 }
 
-vec3 photons_shine_on(float ray_offset, const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
+vec3 photons_shine_on(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
     const vit_material *m = s->material;
     vec3 tint = vec3_load(m->specular);
     vec3 on = shine_mirrored(d, s->normal, s->face);
@@ -68,7 +68,7 @@ vec3 photons_shine_on(float ray_offset, const photon_surface *s, vec3 d, float t
             *power = vec3_times(*power, shine_absorbed(vec3_load(m->absorption), t));
         if (u >= p.mirror) {
             on = p.refracted;
-            *o = vec3_along(*o, s->face, -2.0f * ray_offset);
+            *o = s->beyond;
         } else {
             on = p.mirrored;
             tint = (vec3){1.0f, 1.0f, 1.0f};
@@ -119,7 +119,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             from = s.face;
         } else {
             from = (vec3){0.0f, 0.0f, 0.0f};
-            d = photons_shine_on(b->in->ray_offset, &s, d, t, u, &o, &power);
+            d = photons_shine_on(&s, d, t, u, &o, &power);
         }
         if (!has_power(power))
             return;

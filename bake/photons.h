@@ -1,5 +1,5 @@
-/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. As in kernels/photons.cl:
- * kernels/METHODS.md, "Photon paths". */
+/* photons.c: photons of still lights, traced once while baking: of points and directions, of surfaces, of the sky. As in
+ * kernels/photons.cl: kernels/METHODS.md, "Photon paths". */
 #ifndef VIT_BAKE_PHOTONS_H
 #define VIT_BAKE_PHOTONS_H
 
@@ -53,6 +53,6 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
 
 /* Where a path goes at a mirror or glass, u a random number: Fresnel's part of the paths is mirrored. *power and *o follow; t:
  * its way so far, m. */
-vec3 photons_shine_on(float ray_offset, const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
+vec3 photons_shine_on(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
 
 #endif

@@ -163,7 +163,7 @@ static uint32_t look_on(const zones *z, vec3 o, vec3 d, uint32_t pixel, photon_s
             shine_at_glass(d, s->normal, s->face, s->back, s->material->kind == VIT_THIN_GLASS, s->material->ior);
         const bool through = p.mirror < 1.0f && (k == 0 ? pixel % 2 == 0 : p.mirror <= 0.5f);
         d = through ? p.refracted : p.mirrored;
-        o = through ? vec3_along(o, s->face, -2.0f * z->scene.ray_offset) : o;
+        o = through ? s->beyond : o;
     }
 }
 

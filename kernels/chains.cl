@@ -54,7 +54,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             weight = lv3_sel(inside, shine_left(weight, s.shine.absorption, t), weight);
             weight = lv3_scale(weight, l_sel(glass, part, L_F(1)));
             next = lv3_sel(through, lv3_sel(caught, d, p.refracted), lv3_sel(glass, p.mirrored, next));
-            from = lv3_sel(through, lv3_along(from, s.face, L_F(-2.0f * scene->ray_offset)), from);
+            from = lv3_sel(through, s.beyond, from);
             tint = lv3_sel(glass & mirrored, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
         }
         /* 4. On, with what the surface leaves of the light. */

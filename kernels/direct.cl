@@ -36,25 +36,53 @@ static inline lf light_left(global const vit_light *light, lf d2)
 typedef struct lit_sample {
     li hit;
     lv3 p, n, v;             /* position; unit normal, unit direction to where it is seen from (with gloss) */
+    lv3 face;                /* normal of the triangle on the seen side, of any length (with smooth normals) */
     lf exponent;             /* of the lobe */
     lv3 matt, glossy;        /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
 } lit_sample;
 
-static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, uint first, li hit, global const float *position,
-                                  global const uint *normal, global const float *rays, global const uint *gloss)
+/* The samples' triangles' normals on the side that p is on. */
+static inline lv3 lit_face(global const vit_triangle *triangles, li hit, li triangle, lv3 p)
+{
+    lv3 face = lv3_set(L_F(0), L_F(0), L_F(0));
+    li own;
+    while (l_any(hit)) {
+        global const vit_triangle *t = triangles + surface_next(&hit, triangle, &own);
+        lv3 n = lv3_set(L_F(t->nx), L_F(t->ny), L_F(t->nz));
+        lf side = l_sel(L_LT(lv3_dot(n, lv3_sub(p, lv3_load(t->v0))), L_F(0)), L_F(-1), L_F(1));
+        face = lv3_sel(own, lv3_scale(n, side), face);
+    }
+    return face;
+}
+
+static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, global const vit_triangle *triangles, uint first, li hit,
+                                  global const uint *hit_triangle, global const float *position, global const uint *normal, global const float *rays,
+                                  global const uint *gloss)
 {
     lit_sample s;
     uint n = scene->samples;
     s.hit = hit;
     s.p = sample_position(scene, position, first);
     s.n = l_decode_normal(L_LOAD(normal + first));
-    s.matt = s.glossy = s.v = lv3_set(L_F(0), L_F(0), L_F(0));
+    s.matt = s.glossy = s.v = s.face = lv3_set(L_F(0), L_F(0), L_F(0));
+    if (VIT_EFFECT_SMOOTH)
+        s.face = lit_face(triangles, hit, L_AS_INT(L_LOAD(hit_triangle + first)), s.p);
     s.exponent = L_F(1);
     if (VIT_EFFECT_GLOSS) {
         s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1)) : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
         s.exponent = L_AS_FLOAT(L_LOAD(gloss + n + first));
     }
     return s;
+}
+
+/* Cosine of the light from unit direction l. Light from behind the triangle does not come to this side of it, whatever the interpolated normal
+ * says: its shadow ray would go by the triangle's edge. */
+static inline lf lit_cosine(const lit_sample *s, lv3 l)
+{
+    lf cosine = l_max(lv3_dot(s->n, l), L_F(0));
+    if (VIT_EFFECT_SMOOTH)
+        cosine = l_sel(L_GT(lv3_dot(s->face, l), L_F(0)), cosine, L_F(0));
+    return cosine;
 }
 
 /* Adds light of power `intensity` from unit direction l: e, irradiance a unit of it. */
@@ -92,7 +120,7 @@ static inline lv3 lit_way(global const vit_scene *scene, global const vit_light 
     if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) {
         lv3 along = lv3_scale(lv3_load(light->direction), L_F(-1));
         *d = L_F(3e38f);
-        *e = l_max(lv3_dot(s->n, along), L_F(0));
+        *e = lit_cosine(s, along);
         *to = along;
         return along;
     }
@@ -101,7 +129,7 @@ static inline lv3 lit_way(global const vit_scene *scene, global const vit_light 
     lf d2 = l_max(lv3_dot(*to, *to), L_F(least2));
     *d = l_sqrt(d2);
     lv3 l = lv3_scale(*to, l_div(1.0f, *d));
-    *e = l_max(lv3_dot(s->n, l), L_F(0)) * light_cone(light, l) * light_falloff(light, d2);
+    *e = lit_cosine(s, l) * light_cone(light, l) * light_falloff(light, d2);
     return l;
 }
 
@@ -114,7 +142,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
@@ -149,7 +177,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
         if (!l_any(hit))
             continue;
         hits |= 1u << i;
-        s[i] = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+        s[i] = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
     }
     if (hits == 0)
         return;
@@ -236,6 +264,8 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own
         ray_nearest(RAY_SCENE, &r, near, &t, &triangle);
         WORK_TRACED(r);
         li lit = near & L_NE(triangle, L_I((int)VIT_NONE)) & L_NE(triangle, own);
+        if (VIT_EFFECT_SMOOTH)
+            lit &= L_GT(lv3_dot(s->face, d), L_F(0));
         if (!l_any(lit))
             continue;
         li at = lit & triangle;
@@ -271,7 +301,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
         lv3 to = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at)), l = to;
         lf d = L_F(3e38f), e;
         if (sky)
-            e = l_max(lv3_dot(s->n, l), L_F(0));
+            e = lit_cosine(s, l);
         else {
             /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a sphere of it.
              * The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
@@ -280,7 +310,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
             lf d2 = l_max(lv3_dot(to, to), L_F(least2));
             d = l_sqrt(d2);
             l = lv3_scale(to, l_div(1.0f, d));
-            e = l_div(l_max(lv3_dot(s->n, l), L_F(0)) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
+            e = l_div(lit_cosine(s, l) * l_max(-lv3_dot(n, l), L_F(0)), l_max(d2, L_GATHER(lf, p + 3, at)));
             e = l_sel(near & L_LT(d2, L_GATHER(lf, p + 7, at)), L_F(0), e);
         }
         li lit = s->hit & L_GT(e, L_F(0));
@@ -305,7 +335,7 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
     if (!l_any(hit))
         return;
     WORK_BEGIN
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
     lit_by_emitters(RAY_SCENE, emitters, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)), round / layers, &s WORK_PASS);
     lit_store(scene, &s, first, albedo, gloss, direct);
     WORK_END

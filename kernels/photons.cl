@@ -181,7 +181,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
                 li through = glass & L_GE(u, p.mirror);
                 power = lv3_sel(inside, shine_left(power, s.shine.absorption, t), power);
                 on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
-                start = lv3_sel(through, lv3_along(start, s.face, L_F(-2.0f * scene->ray_offset)), start);
+                start = lv3_sel(through, s.beyond, start);
                 tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
             }
             next = lv3_sel(matt, next, on);

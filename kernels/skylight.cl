@@ -15,7 +15,7 @@ kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_e
     if (first >= n || round_skips(first, active))
         return;
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
-    lit_sample s = lit_load(scene, ROUND, first, hit, position, normal, rays, gloss);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
     if (l_any(hit)) {
         WORK_BEGIN
         lit_by_emitters(RAY_SCENE, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle, round / layers, &s WORK_PASS);

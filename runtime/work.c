@@ -19,7 +19,8 @@
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
     X(area_light, (LIT + sizeof(vit_emitter) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                             \
     X(sky_light,                                                                                                               \
-      (4 + z->position + 4 + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) * z->samples)        \
+      (4 + z->position + 4 + z->face + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) *          \
+          z->samples)                                                                                                          \
     X(sky_filter, (z->position + 4 + 4 + z->gloss / 2 + z->skylight + 12 + 12) * z->samples)                                   \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                  \
@@ -46,8 +47,9 @@
 
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
 #define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
-#define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->view + z->gloss) /* what passes of direct light read and write a sample */
-#define BOX_BYTES(zones) (48 + (zones))                              /* of positions and of normals, and the zones accepted */
+/* What passes of direct light read and write a sample. */
+#define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->face + z->view + z->gloss)
+#define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
 #define BOX BOX_BYTES(z->zones)
 
 typedef struct sizes {
@@ -62,6 +64,7 @@ typedef struct sizes {
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
     uint64_t film;                 /* 1: a pixel has several samples */
     uint64_t activate;             /* bytes a block of samples: active, edges, split */
+    uint64_t face;                 /* bytes a sample: of its triangle, for the normal; 0 without smooth normals */
     uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
     uint64_t lamps;    /* bytes a sample: whether it is a lamp */
@@ -114,6 +117,7 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
     z.activate = 4 + (l->effects & ON(ANTIALIAS) ? 4u : 0u) + (l->effects & ON(GLASS) ? 4u : 0u);
     z.end = l->effects & ON_CHAINS ? 28 : 0;
     z.gloss = l->effects & ON(GLOSS) ? 8 : 0;
+    z.face = l->effects & ON(SMOOTH) ? sizeof(vit_triangle) : 0;
     z.view = z.gloss && z.end ? 12 : 0;
     z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.gloss ? 4u : 0u);
     z.area_samples = s->area_samples;

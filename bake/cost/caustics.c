@@ -93,7 +93,7 @@ static void trace_path(const tracing *w, uint32_t i, uint64_t *rays) {
         }
         const vec3 before = d;
         sequence_point(pcg(seed ^ pcg(hit + 1)), i % w->of_light, &u, &v);
-        paths_pass_on(p, &s, t, (double)u, &o, &d, weight);
+        paths_pass_on(&s, t, (double)u, &o, &d, weight);
         straight &= s.material->kind == VIT_THIN_GLASS && vec3_dot(before, d) > 0.9999f;
     }
 }

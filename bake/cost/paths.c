@@ -93,7 +93,7 @@ static int pass_panes(const path_scene *s, vec3 o, vec3 d, float distance, doubl
         const shine_paths way = shine_at_glass(d, f.normal, f.face, false, true, f.material->ior);
         for (int k = 0; k < 3; k++)
             part[k] *= (1 - (double)way.mirror) * (double)f.material->specular[k];
-        o = vec3_along(f.position, f.face, -2.0f * s->meta->ray_offset);
+        o = f.beyond;
         distance -= t;
     }
     return -1;
@@ -112,7 +112,7 @@ static void look_at_lights(const path_scene *s, const shine_place *place, vec3 n
         if (indirect && s->direct_only && s->direct_only[i])
             continue;
         const float e = light_irradiance(light, place->position, n, &l, &d);
-        if (!(e > 0.0f))
+        if (!(e > 0.0f) || !(vec3_dot(place->face, l) > 0.0f))
             continue;
         *rays += 1;
         if (photon_rays_occluded(&s->rays, place->position, l, d)) {
@@ -147,13 +147,13 @@ static shine_place place_of(const photon_surface *s, vec3 normal, vec3 d) {
     return r;
 }
 
-void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
+void paths_pass_on(const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
     const vit_material *m = s->material;
     const bool inside = m->kind == VIT_GLASS && s->back;
     const shine_paths way = shine_at_glass(*d, s->normal, s->face, s->back, m->kind == VIT_THIN_GLASS, m->ior);
     const bool through = m->kind != VIT_MIRROR && random >= (double)way.mirror;
     *d = through ? way.refracted : way.mirrored;
-    *o = through ? vec3_along(s->position, s->face, -2.0f * p->meta->ray_offset) : s->position;
+    *o = through ? s->beyond : s->position;
     for (int k = 0; k < 3; k++)
         weight[k] *= (through || m->kind == VIT_MIRROR ? (double)m->specular[k] : 1) *
                      (inside ? exp(-(double)m->absorption[k] * (double)t) : 1);
@@ -213,7 +213,7 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
             sequence_point(pcg(seed ^ pcg(OF_CHAIN + event)), *path, &u, &unused);
         for (int k = 0; k < 3; k++)
             out->direct[k] += out->weight[k] * (double)m->emission[k] * (double)c->exposure;
-        paths_pass_on(p, &s, t, (double)u, &o, &d, out->weight);
+        paths_pass_on(&s, t, (double)u, &o, &d, out->weight);
     }
 }
 
@@ -415,7 +415,7 @@ static void trace(const path_scene *p, const caustics *c, const view_sample *v, 
         passing = s.material->kind != VIT_MATTE;
         if (passing) {
             sequence_point(pcg(dimension ^ OF_GLASS), i, &a, &b);
-            paths_pass_on(p, &s, t, (double)a, &o, &d, w.weight);
+            paths_pass_on(&s, t, (double)a, &o, &d, w.weight);
             w.density = 0;
             continue;
         }

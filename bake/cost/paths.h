@@ -52,7 +52,7 @@ void paths_view(const path_scene *p, uint32_t x, uint32_t y, view_sample *out, u
 
 /* Goes on from a mirror or glass that the ray o, d has met after t metres. random, 0..1: less than Fresnel's part is mirrored.
  */
-void paths_pass_on(const path_scene *p, const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]);
+void paths_pass_on(const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]);
 
 typedef struct caustics caustics; /* caustics.h */
 

@@ -83,6 +83,17 @@ typedef struct light_check {
     uint64_t samples, open, shadowed, shadows_wrong, doubtful;
 } light_check;
 
+/* How far a light is before the sample's triangle, as seen from the side that the sample is on, m. */
+static double light_before(const vit_triangle *t, const vit_light *light, const double p[3]) {
+    const double n[3] = {(double)t->nx, (double)t->ny, (double)t->nz};
+    double own[3], to[3];
+    for (int c = 0; c < 3; c++) {
+        own[c] = p[c] - (double)t->v0[c];
+        to[c] = (double)light->position[c] - p[c];
+    }
+    return (oracle_dot(n, own) < 0 ? -1 : 1) * oracle_dot(n, to) / sqrt(oracle_dot(n, n));
+}
+
 /* Sum over lights of what arrives at the sample; `facing` counts those that would reach it, `blocked` those that do not. */
 static oracle_verdict sum_lights(const lit *l, uint32_t i, double sum[3], int *facing, int *blocked) {
     const oracle_sample own = view_frame_sample(&l->f, i);
@@ -90,9 +101,12 @@ static oracle_verdict sum_lights(const lit *l, uint32_t i, double sum[3], int *f
     const double margin = (double)s->ray_offset / 16; /* the ray offset is 2^-16 of the largest coordinate */
     for (uint32_t k = 0; k < s->lights; k++) {
         const double e = oracle_light(l->lights + k, own.position, own.normal);
+        const double before = light_before(l->b.triangles + l->f.hit[i], l->lights + k, own.position);
         float o[3], d[3];
-        if (!(e > 0))
+        if (!(e > 0) || before < -margin) /* from behind the triangle none comes, whatever its interpolated normal */
             continue;
+        if (before < margin)
+            return ORACLE_DOUBTFUL;
         for (int c = 0; c < 3; c++) {
             o[c] = (float)own.position[c];
             d[c] = l->lights[k].position[c] - o[c];

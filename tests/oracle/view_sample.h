@@ -25,8 +25,9 @@ static inline double oracle_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Where pixel (x, y)'s ray meets the plane of t, moved off it by the ray offset to the side that the ray comes from; face: the
- * unit normal of that side. Returns the distance from the eye, m. */
+/* The place on pixel (x, y)'s ray that is the ray offset before the plane of t; of rays that graze it, 8 offsets back from
+ * there and the rest along face, the unit normal of the side that the ray comes from. Returns the distance of the plane from
+ * the eye, m. */
 static inline double oracle_hit_point(const vit_scene *s, const vit_camera *camera, const vit_triangle *t, uint32_t x,
                                       uint32_t y, double p[3], double face[3]) {
     double d[3], a[3], b[3], to[3];
@@ -40,11 +41,13 @@ static inline double oracle_hit_point(const vit_scene *s, const vit_camera *came
         face[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
     const double across = oracle_dot(face, d), far = oracle_dot(face, to) / across;
     const double unit = (across > 0 ? -1 : 1) / sqrt(oracle_dot(face, face));
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         face[k] *= unit;
-        p[k] = (double)camera->eye[k] + far * d[k] + (double)s->ray_offset * face[k];
-    }
-    return far * sqrt(oracle_dot(d, d));
+    const double length = sqrt(oracle_dot(d, d)), cosine = fabs(oracle_dot(face, d)) / length, off = (double)s->ray_offset;
+    const double back = fmin(off / fmax(cosine, 0.125), far * length), rest = fmax(off - back * cosine, 0);
+    for (int k = 0; k < 3; k++)
+        p[k] = (double)camera->eye[k] + (far - back / length) * d[k] + rest * face[k];
+    return far * length;
 }
 
 #endif
