@@ -25,7 +25,7 @@ $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
-    vfprintf puts putchar fputs fwrite write
+    vfprintf puts putchar fputs fwrite write __printf_chk __fprintf_chk
 # Put before libc's by LD_PRELOAD: signals at counted moments.
 $(addprefix $(B)/tests/golden/test_,killed tools): $(B)/tests/signal_at.so
 $(B)/tests/signal_at.so: tests/preload/signal_at.c

@@ -63,6 +63,29 @@ int __wrap_fprintf(FILE *to, const char *format, ...) {
     return n;
 }
 
+/* The same as compilers call them that check by default, as Ubuntu's does (_FORTIFY_SOURCE). */
+int __wrap___printf_chk(int checks, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int __wrap___printf_chk(int checks, const char *format, ...) {
+    va_list list;
+    (void)checks;
+    calls++;
+    va_start(list, format);
+    const int n = __real_vfprintf(stdout, format, list);
+    va_end(list);
+    return n;
+}
+
+int __wrap___fprintf_chk(FILE *to, int checks, const char *format, ...) __attribute__((format(printf, 3, 4)));
+int __wrap___fprintf_chk(FILE *to, int checks, const char *format, ...) {
+    va_list list;
+    (void)checks;
+    calls++;
+    va_start(list, format);
+    const int n = __real_vfprintf(to, format, list);
+    va_end(list);
+    return n;
+}
+
 /* glibc's names with and without 64-bit file offsets. */
 int __real_open64(const char *path, int flags, ...);
 int __wrap_open64(const char *path, int flags, ...);
