@@ -1,4 +1,4 @@
-/* pipeline_load, once a scene: import -> tracks -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
+/* pipeline_load, once a scene: import -> tracks -> lamps' planes -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
  * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> guides -> emitters -> photons; with
  * radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it, photons again; then zones
  * and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds (the whole path is played) -> effects
@@ -7,6 +7,7 @@
 #include "bounds.h"
 #include "file_trouble.h"
 #include "glass_gap.h"
+#include "lamp_plane.h"
 #include "light_units.h"
 #include "photons.h"
 #include "scene_move.h"
@@ -62,6 +63,18 @@ vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
 
 static vit_status draw_glass_in(model *m, vit_text *why) {
     return glass_gap(m, geometry_ray_offset(m)) ? VIT_OK : out_of_memory(why);
+}
+
+/* Lamps in the very plane of a ceiling come out of it. */
+static vit_status part_lamps(pipeline *p, vit_text *why) {
+    const float ray_offset = geometry_ray_offset(&p->model);
+    uint32_t moved;
+    if (!lamp_plane(&p->model, p->tracks.cameras, (uint32_t)p->scene.frames, ray_offset, &moved))
+        return out_of_memory(why);
+    if (moved > 0)
+        progress_line(p->progress, false, "%u triangles that emit lie in the plane of others: moved by %.2g m to the camera's side", moved,
+                      LAMP_PLANE * (double)ray_offset);
+    return VIT_OK;
 }
 
 /* BVH, triangles and dark sides of the model. */
@@ -128,7 +141,9 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     light_units_say(&p->scene, &p->model, p->progress);
-    status = draw_glass_in(&p->model, why);
+    status = part_lamps(p, why);
+    if (status == VIT_OK)
+        status = draw_glass_in(&p->model, why);
     if (status == VIT_OK)
         status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
     p->kept = calloc(1, sizeof *p->kept);

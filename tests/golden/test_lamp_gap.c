@@ -55,12 +55,29 @@ static void light_from_a_gap_is_not_interpolated_across_it(void **state) {
         fail_msg("NMSE %g of indirect light", worst);
 }
 
+/* In the ceiling's very plane it comes out of it, and lights the room as from a millimetre below. */
+static void a_lamp_in_its_ceilings_plane_is_no_dark_one(void **state) {
+    static float light[FLOATS];
+    static const double gaps[] = {0.0, 0.001}; /* m */
+    double sum[2] = {0};
+    for (int i = 0; i < 2; i++) {
+        write_scene(*state, "plane.cfg", gaps[i]);
+        scene_lab_indirect(*state, "plane.cfg", "--indirect-samples 1", light, FLOATS);
+        for (int k = 0; k < FLOATS; k++)
+            sum[i] += k % 4 == 3 ? 0.0 : (double)light[k];
+    }
+    assert_true(sum[1] > 0);
+    if (!(sum[0] > 0.98 * sum[1] && sum[0] < 1.02 * sum[1]))
+        fail_msg("%g of the light of a lamp a millimetre lower", sum[0] / sum[1]);
+}
+
 int main(void) {
     static const double half[3] = {1.125, CEILING, 1.375};
     static scene_lab lab;
     scene_lab_open(&lab);
     scene_lab_write_room(&lab, "room.obj", half, 0);
-    const struct CMUnitTest tests[] = {cmocka_unit_test_prestate(light_from_a_gap_is_not_interpolated_across_it, &lab)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_prestate(light_from_a_gap_is_not_interpolated_across_it, &lab),
+                                       cmocka_unit_test_prestate(a_lamp_in_its_ceilings_plane_is_no_dark_one, &lab)};
     const int failed = cmocka_run_group_tests_name("lamp gap", tests, NULL, NULL);
     scene_lab_close(&lab);
     return failed;
