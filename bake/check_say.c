@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define NEARLY_ALL 0.95 /* of the pixels */
+#define MUCH 0.25       /* too much of indirect light */
 #define MIDDLE 0.2      /* radiance times exposure that a suggested exposure gives the median pixel */
 
 void check_text(const check_found *f, char *text, size_t room) {
@@ -16,7 +17,8 @@ void check_cure(const check_found *f, const scene_quality *q, const plan *p, cha
     const uint64_t e = p->scene.effects;
     const bool photons = (e & VIT_BIT(PHOTONS)) != 0;
     text[0] = '\0';
-    if (fabs(f->direct - 1) > CHECK_LIMIT / 2 && (e & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))))
+    const bool leaks = photons && f->indirect - 1 > fmax(MUCH, fabs(f->direct - 1)); /* no direct light is to blame for */
+    if (!leaks && fabs(f->direct - 1) > CHECK_LIMIT / 2 && (e & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))))
         (void)snprintf(text, room, "raise %s",
                        !(e & VIT_BIT(SKY_LIGHT))     ? "light_samples"
                        : !(e & VIT_BIT(AREA_LIGHTS)) ? "sky_samples"

@@ -1,4 +1,5 @@
 #include "file_trouble.h"
+#include "gltf_extensions.h"
 #include "importer.h"
 #include "names.h"
 #include <assimp/cimport.h>
@@ -221,6 +222,20 @@ bool import_file(importer *im, const scene_mesh *mesh) {
 
 /* ---- all files ---- */
 
+/* What a glTF file cannot be understood without, by its own word. */
+static bool check_required(importer *im) {
+    gltf_extension found[GLTF_EXTENSIONS];
+    const int count = im->gltf ? gltf_extensions(im->file, found) : 0;
+    for (int i = 0; i < count; i++) {
+        if (!found[i].required || found[i].read)
+            continue;
+        if (im->strict)
+            return import_fail(im, "extension '%s' is required and not read", found[i].name);
+        import_warn(im, "extension '%s' is required and not read", found[i].name);
+    }
+    return true;
+}
+
 static void find_box(model *m) {
     for (int k = 0; k < 3; k++) {
         m->lo[k] = m->hi[k] = (double)m->position[k];
@@ -274,7 +289,7 @@ static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, v
     for (int i = 0; fine && i < s->mesh_count; i++) {
         next_file(&im, s->meshes[i].file);
         im.file_index = (uint32_t)i;
-        fine = check_there(&im) && import_check_ply(&im) && read(&im, &s->meshes[i]);
+        fine = check_there(&im) && check_required(&im) && import_check_ply(&im) && read(&im, &s->meshes[i]);
     }
     next_file(&im, s->path);
     for (int i = 0; fine && i < s->material_count; i++)

@@ -150,13 +150,6 @@ static void remember(void *user, const char *line) {
         l->failed = true;
 }
 
-/* An extension that is not read, of a file that cannot be understood without it. */
-static void remember_required(list *l, const char *file, const gltf_extension *e) {
-    char line[1024];
-    (void)snprintf(line, sizeof line, "%.600s: extension '%.*s' is required and not read", file, (int)sizeof e->name, e->name);
-    remember(l, line);
-}
-
 static void add_extensions(list *l, const char *file) {
     gltf_extension found[GLTF_EXTENSIONS];
     const int count = gltf_extensions(file, found);
@@ -168,11 +161,8 @@ static void add_extensions(list *l, const char *file) {
         return;
     }
     l->extensions = grown;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++)
         grown[l->extension_count++] = (list_extension){file, found[k]};
-        if (found[k].required && !found[k].read)
-            remember_required(l, file, &found[k]);
-    }
 }
 
 vit_status list_print(const scene *s, bool strict, bool json, FILE *to, vit_text *why) {

@@ -162,6 +162,8 @@ vit_status options_parse(int argc, char **argv, options *out, vit_text *why) {
             i += !w.joined;
         }
     }
+    if (out->table && (out->list || out->input))
+        return usage(why, "--settings", "goes alone");
     if (out->help || out->version || out->table)
         return VIT_OK;
     if (!out->input)
@@ -234,6 +236,7 @@ void options_help(void) {
         "which has no\n"
         "                        kernels to compile); changes no byte. With --fit: plays what is timed (default 0, or host if\n"
         "                        there is no OpenCL)\n"
+        "  --settings            the settings of a quality block, their values, defaults and meaning, as a Markdown table\n"
         "  --quiet               warnings and errors only\n"
         "  --version, --help     every --option VALUE may be written --option=VALUE\n"
         "\n"

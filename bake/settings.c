@@ -53,6 +53,8 @@ static void write_option(const setting_row *s, char *text, size_t room) {
     for (char *c = text; *c; c++)
         *c = *c == '_' ? '-' : *c;
     fields_wants(&s->field, NULL, text + used, room - used);
+    if (s == &setting_rows[SETTING_AT_zones]) /* with light_zones (options.c) */
+        (void)snprintf(text + strlen(text), room - strlen(text), "|2");
 }
 
 /* The default as the scene file would have it. */

@@ -238,6 +238,26 @@ static void a_missing_texture_is_an_error_only_if_strict(void **state) {
 
 #define SMALL TEST_PACKS "/lamp.cfg --no-check --size 16x16 --frames 1"
 
+/* What a file says that it cannot be understood without (glTF 2.0, 3.12). */
+static void a_required_extension_that_is_not_read_is_an_error_if_strict(void **state) {
+    (void)state;
+    static const char text[] =
+        "{\"asset\": {\"version\": \"2.0\"}, \"extensionsUsed\": [\"VENDOR_x\"], \"extensionsRequired\": [\"VENDOR_x\"],"
+        "\"scenes\": [{\"nodes\": [0]}], \"scene\": 0, \"nodes\": [{\"mesh\": 0}], \"meshes\": [{\"primitives\": "
+        "[{\"attributes\": {\"POSITION\": 0}}]}],"
+        "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\", \"min\": [0, 0, 0], "
+        "\"max\": [1, 1, 0]}],"
+        "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
+    test_packs_write(TEST_PACKS "/required.gltf", text, sizeof text - 1);
+    bake_refuses("--strict " TEST_PACKS "/required.gltf" OUT, VIT_BAD_INPUT, "extension 'VENDOR_x' is required and not read");
+    tool(&r, TOOL_BAKE " --quiet --no-check --device host --size 16x16 --frames 1 " TEST_PACKS "/required.gltf" OUT);
+    tool_succeeds(&r);
+    assert_non_null(strstr(r.err, "warning: " TEST_PACKS "/required.gltf: extension 'VENDOR_x' is required and not read"));
+    assert_int_equal(empty(FOLDER), 1);
+    (void)unlink(TEST_PACKS "/required.gltf");
+}
+
 static void a_pack_that_cannot_be_written_is_a_failure_and_leaves_nothing(void **state) {
     (void)state;
     bake_refuses(SMALL " -o " FOLDER "/no/such/folder/out.vit", VIT_FAILED, FOLDER "/no/such/folder/out.vit");
@@ -486,6 +506,7 @@ int main(void) {
         cmocka_unit_test(the_baker_names_a_file_that_is_missing),
         cmocka_unit_test(the_baker_refuses_bad_scenes_with_file_and_line),
         cmocka_unit_test(a_missing_texture_is_an_error_only_if_strict),
+        cmocka_unit_test(a_required_extension_that_is_not_read_is_an_error_if_strict),
         cmocka_unit_test(a_pack_that_cannot_be_written_is_a_failure_and_leaves_nothing),
         cmocka_unit_test(a_bake_that_fails_leaves_the_old_pack_alone),
         cmocka_unit_test(an_interrupted_bake_exits_with_1_and_leaves_no_file),
