@@ -51,12 +51,13 @@ static vit_status pack(const search *s, const scene_quality *q, pipeline_packed 
     return pipeline_pack(s->p, &c, out, why);
 }
 
-/* A line of what was tried. */
+/* A line of what was tried; counts it. */
 static void say_tried(const search *s, const scene_quality *q, const check_found *found) {
     char settings[AUTO_TEXT], figures[128];
     scene_quality_difference(q, settings, sizeof settings);
     check_text(found, figures, sizeof figures);
     progress_line(s->loud, false, "  tried { %s}: %s", settings, figures);
+    s->out->tried++;
 }
 
 /* parts: direct light alone, too. */
@@ -96,7 +97,6 @@ static vit_status choose_samples(search *s, const pipeline_packed *packed, doubl
         q.light_samples = points ? samples : q.light_samples;
         q.sky_samples = directions ? samples : q.sky_samples;
         const vit_status status = measure(s, &q, true, &found, why);
-        s->out->tried++;
         if (status != VIT_OK)
             return status;
         if (fabs(found.direct - 1) > 0.8 * fabs(direct - 1))
@@ -189,7 +189,6 @@ static vit_status climb(search *s, vit_text *why) {
         if (known)
             found = s->found;
         found.direct = s->found.direct; /* the same in all of them */
-        a->tried++;
         if (distance(&found) < best) {
             best = distance(&found);
             a->found = found;
