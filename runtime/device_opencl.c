@@ -1,11 +1,13 @@
 #include "device_opencl.h"
 #include "fail.h"
 #include "kernel_sources.h"
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #define MAX_PLATFORMS 16
 #define MAX_DEVICES 32
+#define POCL "Portable Computing Language" /* its platform */
 
 static const char *error_name(cl_int error) {
     switch (error) {
@@ -43,7 +45,8 @@ static vit_status failed(vit_text *why, const char *call, cl_int error) {
 static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
     cl_platform_id platforms[MAX_PLATFORMS];
     cl_uint platform_count = 0, seen = 0;
-    char without[200] = ""; /* platforms that are installed, but have no device: PoCL without a place for its cache */
+    bool pocl = false;
+    char without[320] = ""; /* platforms that are installed, but have no device: PoCL without a place for its cache */
     cl_int e = clGetPlatformIDs(MAX_PLATFORMS, platforms, &platform_count);
     if (e != CL_SUCCESS)
         return failed(why, "clGetPlatformIDs", e);
@@ -57,6 +60,7 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
             size_t n = strlen(without);
             clGetPlatformInfo(platforms[p], CL_PLATFORM_NAME, sizeof name, name, NULL);
             snprintf(without + n, sizeof without - n, "%s%s", n > 0 ? ", " : "; without a device: ", name);
+            pocl = pocl || strstr(name, POCL) != NULL;
             continue;
         }
         if (count > MAX_DEVICES)
@@ -67,6 +71,9 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
         }
         seen += count;
     }
+    const size_t n = strlen(without);
+    if (pocl)
+        snprintf(without + n, sizeof without - n, " (it has none where it cannot make its cache: set POCL_CACHE_DIR to a folder with room)");
     if (seen > 1)
         return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only 0 to %u, and host%s", index, seen - 1, without);
     return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only %shost%s", index, seen > 0 ? "0 and " : "", without);
@@ -176,7 +183,7 @@ static void say_where_pocl_writes(const vit_opencl *d, vit_text *why) {
     if (clGetDeviceInfo(d->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL) == CL_SUCCESS)
         clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof name, name, NULL);
     const size_t n = strlen(why->text);
-    if (strstr(name, "Portable Computing Language"))
+    if (strstr(name, POCL))
         snprintf(why->text + n, sizeof why->text - n,
                  "; PoCL compiles in its cache: set POCL_CACHE_DIR to a folder with room, or take the device host");
 }

@@ -34,6 +34,9 @@ static vit_status find_device(const cost_options *o, uint32_t *out, vit_text *wh
         return vit_device_find(o->device, out, why);
     if (o->output || o->fit > 0)
         *out = vit_device_default();
+    vit_text none;
+    if ((o->output || o->fit > 0) && *out == VIT_DEVICE_HOST && !o->quiet && !vit_device_name(0, &none))
+        fprintf(stderr, "%s; timing the built-in device host\n", none.text);
     return VIT_OK;
 }
 

@@ -140,6 +140,9 @@ static void the_baker_says_what_keeps_pocl_from_compiling(void **state) {
     (void)state;
     if (!has_pocl())
         return;
+    tool(&r, "POCL_CACHE_DIR=/dev/null/x " TOOL_BAKE " " TEST_SCENES
+             "/furnace.cfg --size 16x12 --frames 1 --no-check --device pocl --quiet -o " FOLDER "/none.vit");
+    tool_refuses(&r, "vitrine-bake", VIT_FAILED, "set POCL_CACHE_DIR to a folder with room");
     (void)mkdir(FOLDER "/none", 0777);
     if (!mount_small(FOLDER "/none", "size=16k")) {
         print_message("may not mount here: a full disk is not tried\n");
