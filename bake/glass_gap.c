@@ -28,12 +28,7 @@ static const float *position(const model *m, uint32_t triangle, uint32_t k) {
 }
 
 static bool unit_normal(const model *m, uint32_t triangle, double n[3]) {
-    float f[3];
-    triangle_normal(position(m, triangle, 0), position(m, triangle, 1), position(m, triangle, 2), f);
-    const double length = sqrt((double)f[0] * (double)f[0] + (double)f[1] * (double)f[1] + (double)f[2] * (double)f[2]);
-    for (int k = 0; k < 3; k++)
-        n[k] = (double)f[k] / length;
-    return length > 0.0;
+    return triangle_unit_normal(position(m, triangle, 0), position(m, triangle, 1), position(m, triangle, 2), n);
 }
 
 static double dot(const double a[3], const double b[3]) {

@@ -21,7 +21,6 @@ static double dot(const double a[3], const double b[3]) {
 
 static bool face_of(const model *m, uint32_t triangle, face *out) {
     const float *p[3];
-    float n[3];
     *out = (face){.triangle = triangle};
     for (size_t k = 0; k < 3; k++) {
         p[k] = m->position + 3 * (size_t)m->index[3 * (size_t)triangle + k];
@@ -31,11 +30,7 @@ static bool face_of(const model *m, uint32_t triangle, face *out) {
             out->high[x] = k == 0 || out->corner[k][x] > out->high[x] ? out->corner[k][x] : out->high[x];
         }
     }
-    triangle_normal(p[0], p[1], p[2], n);
-    const double length = sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] + (double)n[2] * (double)n[2]);
-    for (int x = 0; x < 3; x++)
-        out->normal[x] = (double)n[x] / length;
-    return length > 0.0;
+    return triangle_unit_normal(p[0], p[1], p[2], out->normal);
 }
 
 static bool emits(const model *m, uint32_t triangle) {

@@ -86,8 +86,6 @@ static bool quality_setting(const char *name, const char *value, options *o, boo
     const bool zones = s == &setting_rows[SETTING_AT_zones], both = zones && value && strcmp(value, "2") == 0;
     settings_wants(s, wants->text, sizeof wants->text);
     if (zones)
-        (void)snprintf(wants->text, sizeof wants->text, "0, 1, or 2 for light_zones too");
-    if (zones)
         o->settings[SETTING_AT_light_zones] = both ? "1" : "0";
     o->settings[s - setting_rows] = both ? "1" : value;
     return both || settings_put(s, value, &scratch);
@@ -223,10 +221,9 @@ void options_help(void) {
         "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
         "  --no-check            does not compare the picture with path tracing (else seconds), and so chooses no quality "
         "either\n"
-        "  --quality auto        chooses zones, areas, radius, photons, bounces and samples by that check, but for what the "
-        "scene file or an\n"
-        "                        option states; the default where there is no quality block. stated: what is stated, and "
-        "defaults\n"
+        "  --quality auto        chooses the settings that --settings marks with * by that check, but for what the scene "
+        "file or an option\n"
+        "                        states; the default where there is no quality block. stated: what is stated, and defaults\n"
         "  --fit MS              tries many settings (as vitrine-cost does) and bakes the most accurate one whose frames take "
         "at most MS\n"
         "                        milliseconds (95th percentile) on this device; prints what it chose from\n"

@@ -1,5 +1,5 @@
-/* The method of kernels/photons.cl, step for step and operation for operation; only the hits come from Embree, which finds the
- * same triangle but for rounding at edges. Power: see vit_photon. */
+/* The method of kernels/photons.cl, step for step and operation for operation; hits are the kernels', too, of triangles
+ * that Embree proposes (triangle_rays.c). Power: see vit_photon. */
 #include "photons.h"
 #include "photon_emission.h"
 #include "photon_shine.h"

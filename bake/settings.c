@@ -45,7 +45,10 @@ bool settings_put(const setting_row *s, const char *text, scene_quality *q) {
 }
 
 void settings_wants(const setting_row *s, char *text, size_t room) {
-    fields_wants(&s->field, s->unit, text, room);
+    if (s == &setting_rows[SETTING_AT_zones]) /* 2: options.c */
+        (void)snprintf(text, room, "0, 1, or 2 for light_zones too");
+    else
+        fields_wants(&s->field, s->unit, text, room);
 }
 
 static void write_option(const setting_row *s, char *text, size_t room) {
@@ -53,7 +56,7 @@ static void write_option(const setting_row *s, char *text, size_t room) {
     for (char *c = text; *c; c++)
         *c = *c == '_' ? '-' : *c;
     fields_wants(&s->field, NULL, text + used, room - used);
-    if (s == &setting_rows[SETTING_AT_zones]) /* with light_zones (options.c) */
+    if (s == &setting_rows[SETTING_AT_zones]) /* as settings_wants() says */
         (void)snprintf(text + strlen(text), room - strlen(text), "|2");
 }
 

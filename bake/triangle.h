@@ -5,6 +5,9 @@
 #ifndef VIT_BAKE_TRIANGLE_H
 #define VIT_BAKE_TRIANGLE_H
 
+#include <math.h>
+#include <stdbool.h>
+
 static inline void triangle_normal(const float v0[3], const float v1[3], const float v2[3], float n[3]) {
     double a[3], b[3];
     for (int k = 0; k < 3; k++) {
@@ -13,6 +16,16 @@ static inline void triangle_normal(const float v0[3], const float v1[3], const f
     }
     for (int k = 0; k < 3; k++)
         n[k] = (float)(a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+}
+
+/* Of unit length. False: the normal is 0, and has no direction. */
+static inline bool triangle_unit_normal(const float v0[3], const float v1[3], const float v2[3], double n[3]) {
+    float f[3];
+    triangle_normal(v0, v1, v2, f);
+    const double length = sqrt((double)f[0] * (double)f[0] + (double)f[1] * (double)f[1] + (double)f[2] * (double)f[2]);
+    for (int k = 0; k < 3; k++)
+        n[k] = (double)f[k] / length;
+    return length > 0.0;
 }
 
 #endif

@@ -7,8 +7,8 @@
 
 typedef struct vit_pack {
     const vit_scene *scene; /* META, in the machine's byte order */
-    const void
-        *section[VIT_SECTION_COUNT]; /* in place, so in the file's byte order (open.c: in the machine's); NULL if empty */
+    /* In place, so in the file's byte order (open.c: in the machine's); NULL if empty. */
+    const void *section[VIT_SECTION_COUNT];
     size_t bytes[VIT_SECTION_COUNT];
 #if VIT_BIG_ENDIAN
     vit_scene swapped; /* where `scene` points: a copy of a vit_pack needs its own */

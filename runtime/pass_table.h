@@ -92,7 +92,7 @@
     X(resolve, ALWAYS, AT_END, PER_SAMPLE, ONCE, W(framebuffer),                                                              \
       B(scene), B(cameras), V(frame), B(bvh), B(hit_triangle), B(hit_distance), B(normal), B(albedo), B(direct),              \
       V(max_nodes), B(indirect), B(keys), B(masks), B(prefix), B(list_count), B(dots), B(photons), B(gloss), B(rays), B(film), B(edges),    \
-      V(pitch), B(framebuffer))                                                                                                         \
+      V(pitch), B(framebuffer))                                                                                                \
     X(account, ON(PHOTONS), EACH, ONE_GROUP, ONCE, W(counters) | W(faults),                                                   \
       B(counters), V(frame), V(round), B(faults))
 
