@@ -204,7 +204,7 @@ help:
 clean:
 	rm -rf build
 format:
-	clang-format -i $$(git ls-files '*.c' '*.h')
+	tests/format.sh
 # Tables in READMEs that are made from the code.
 readme: $(B)/vitrine-bake
 	$(B)/vitrine-bake --settings > $(B)/settings_table

@@ -29,7 +29,8 @@ static vit_status out_of_memory(vit_text *why) {
     return VIT_FAILED;
 }
 
-static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool reach, vit_text *why) {
+static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool reach,
+                            vit_text *why) {
     vit_requirements need;
     vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
     info.record_reach = reach;
@@ -123,7 +124,8 @@ static uint32_t doubled(uint32_t want, uint32_t most) {
 }
 
 /* What the frame's rays reached; words: room for the runtime's. */
-static vit_status note_reached(bounds_input *in, const run *r, const vit_statistics *t, uint32_t index, uint32_t *words, vit_text *why) {
+static vit_status note_reached(bounds_input *in, const run *r, const vit_statistics *t, uint32_t index, uint32_t *words,
+                               vit_text *why) {
     uint64_t tests = 0;
     for (uint32_t p = 0; p < t->pass_count && t->work_count > 0; p++)
         tests += t->pass_work[p][VIT_WORK_cutout_tests];
@@ -153,7 +155,8 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         if (t.nodes > s->max_nodes || t.list > s->max_list) {
             if ((t.nodes > s->max_nodes && s->max_nodes == MOST_NODES) || (t.list > s->max_list && s->max_list == MOST_LIST)) {
                 snprintf(why->text, sizeof why->text,
-                         "frame %u needs %u hierarchy nodes and %u list entries, at most %u and %u are possible: lower quality.radius or "
+                         "frame %u needs %u hierarchy nodes and %u list entries, "
+                         "at most %u and %u are possible: lower quality.radius or "
                          "quality.photons",
                          *next, t.nodes, t.list, MOST_NODES, MOST_LIST);
                 status = VIT_BAD_INPUT;

@@ -9,12 +9,12 @@
 typedef void bounds_progress_fn(void *user, const char *stage, double fraction);
 
 typedef struct bounds_input {
-    pack_sections *sections;   /* META is `scene`; GOLD is written by the runs */
-    vit_scene *scene;          /* slices and bounds are filled in */
-    vit_gold *gold;            /* scene->frames records, filled in */
-    effects_reached *reached;  /* EFFECTS_RECORDS(scene->materials) zeroed records, filled in; NULL: not asked for */
-    uint32_t device, threads;  /* as in vit_open_info */
-    int all_formats;           /* golden hashes of RGB565 and RGBA32F too: two more runs */
+    pack_sections *sections;  /* META is `scene`; GOLD is written by the runs */
+    vit_scene *scene;         /* slices and bounds are filled in */
+    vit_gold *gold;           /* scene->frames records, filled in */
+    effects_reached *reached; /* EFFECTS_RECORDS(scene->materials) zeroed records, filled in; NULL: not asked for */
+    uint32_t device, threads; /* as in vit_open_info */
+    int all_formats;          /* golden hashes of RGB565 and RGBA32F too: two more runs */
     bounds_progress_fn *progress;
     void *user;
 } bounds_input;

@@ -7,9 +7,9 @@
 
 typedef struct curves {
     int keys, components;
-    double *time;              /* keys, strictly increasing */
-    double *value;             /* keys * components, a key's components side by side */
-    double *slope;             /* likewise; filled by curves_smooth() */
+    double *time;  /* keys, strictly increasing */
+    double *value; /* keys * components, a key's components side by side */
+    double *slope; /* likewise; filled by curves_smooth() */
 } curves;
 
 /* Room for all values; false: out of memory. Fill `time` and `value`, then call curves_smooth(). */

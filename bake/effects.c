@@ -134,8 +134,8 @@ static void say_frames(sentence *s, const effects_reached *r, uint32_t by, uint3
 }
 
 /* The materials that call for the effect, those that are reached or those that are not. Returns their number. */
-static int say_materials(sentence *s, uint64_t effect, const model *m, const vit_material *materials, const effects_reached *reached, bool which,
-                         uint32_t frames) {
+static int say_materials(sentence *s, uint64_t effect, const model *m, const vit_material *materials,
+                         const effects_reached *reached, bool which, uint32_t frames) {
     int count = 0;
     for (int i = 0; i < m->material_count; i++) {
         const bool is_reached = reached[i].how & ways(effect);
@@ -157,11 +157,16 @@ static int say_materials(sentence *s, uint64_t effect, const model *m, const vit
 
 /* The record of what the effect acts on that is no material; -1: it acts on materials. */
 static int other(uint64_t effect, int materials) {
-    return effect == VIT_BIT(SMOOTH) ? materials : effect == VIT_BIT(SKY_IMAGE) ? materials + 1 : effect == VIT_BIT(CUTOUT) ? materials + 2 : -1;
+    return effect == VIT_BIT(SMOOTH)      ? materials
+           : effect == VIT_BIT(SKY_IMAGE) ? materials + 1
+           : effect == VIT_BIT(CUTOUT)    ? materials + 2
+                                          : -1;
 }
 
 static const char *what_is_other(uint64_t effect) {
-    return effect == VIT_BIT(SMOOTH) ? "triangles with normals of their own" : effect == VIT_BIT(SKY_IMAGE) ? "the sky" : "cut-out triangles";
+    return effect == VIT_BIT(SMOOTH)      ? "triangles with normals of their own"
+           : effect == VIT_BIT(SKY_IMAGE) ? "the sky"
+                                          : "cut-out triangles";
 }
 
 static bool is_settled(uint64_t effect) {
@@ -209,11 +214,13 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
         say(&s, "%s", forced_on && is_settled(effect) ? "nothing on the path calls for it" : table[bit].when);
 }
 
-void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached, effects_decided *out) {
+void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
+                    effects_decided *out) {
     out->dropped = out->missed = 0;
     for (int bit = 0; bit < 64; bit++) {
         const uint64_t effect = (uint64_t)1 << bit;
-        if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) && !is_reached(effect, other(effect, m->material_count), m, materials, reached))
+        if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) &&
+            !is_reached(effect, other(effect, m->material_count), m, materials, reached))
             out->dropped |= effect;
     }
     const uint64_t before = c->effects;

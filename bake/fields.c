@@ -329,8 +329,11 @@ void fields_wants(const field *f, const char *unit, char *text, size_t room) {
     const char *list = f->kind == FIELD_SWITCH ? "0|1" : f->allowed, *comma = strchr(list, ',');
     if (number) {
         const int low = (int)(comma - list) - 1, high = (int)strcspn(comma + 2, ")]");
-        (void)snprintf(text, room, "%s%.*s%s%.*s%s%s%s", *list != '(' ? "" : unit ? "above " : ">", low, list + 1,
-                       unit ? " to " : "..", high, comma + 2, unit && *unit ? " " : "", unit ? unit : "",
+        (void)snprintf(text, room, "%s%.*s%s%.*s%s%s%s",
+                       *list != '(' ? ""
+                       : unit       ? "above "
+                                    : ">",
+                       low, list + 1, unit ? " to " : "..", high, comma + 2, unit && *unit ? " " : "", unit ? unit : "",
                        f->kind != FIELD_AUTO ? ""
                        : unit                ? ", or auto"
                                              : "|auto");

@@ -1,4 +1,5 @@
-/* Paths are guided in the numbers that choose them, not in space: so any light is, and its first reflection with it. kernels/METHODS.md, "Guided photons". */
+/* Paths are guided in the numbers that choose them, not in space: so any light is, and its first reflection with it.
+ * kernels/METHODS.md, "Guided photons". */
 #include "guide.h"
 #include "photon_math.h"
 #include "vitrine_pack.h"

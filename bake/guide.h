@@ -7,8 +7,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define GUIDE_DIMENSIONS 6  /* at most: numbers of a path's start and of its first reflection */
-#define GUIDE_EVENLY 0.2f   /* of the paths go evenly everywhere, so that no photon carries more than 1 / 0.2 of what it would \
+#define GUIDE_DIMENSIONS 6 /* at most: numbers of a path's start and of its first reflection */
+#define GUIDE_EVENLY                                                                                                           \
+    0.2f                    /* of the paths go evenly everywhere, so that no photon carries more than 1 / 0.2 of what it would \
                              */
 #define GUIDE_NODES 131072u /* at most */
 

@@ -114,7 +114,8 @@ static bool refuse_empty(importer *im) {
     if (im->bad_polygon)
         return import_fail(im, "has no triangle, and no polygon of at most 1024 corners whose indices are in range");
     if (im->clear)
-        return import_fail(im, "has no triangle that is not transparent: transparency is not simulated; 'cutoff = 0' for its materials in the scene file shows them");
+        return import_fail(im, "has no triangle that is not transparent: transparency is not simulated; "
+                               "'cutoff = 0' for its materials in the scene file shows them");
     return import_fail(im, "has no triangle");
 }
 
@@ -159,7 +160,8 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     im->placed = calloc((size_t)im->ai->mNumMeshes + 1, sizeof *im->placed);
     if (!im->placed)
         return import_fail(im, "out of memory");
-    const bool placed = import_transparency(im) && add_node(im, im->ai->mRootNode, mesh->transform, 0) && add_strays(im, mesh) && list_meshes(im);
+    const bool placed = import_transparency(im) && add_node(im, im->ai->mRootNode, mesh->transform, 0) &&
+                        add_strays(im, mesh) && list_meshes(im);
     free(im->placed);
     im->placed = NULL;
     if (!placed)
@@ -170,7 +172,8 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     if (im->not_finite)
         import_warn(im, "%llu triangles with positions that are not finite dropped", (unsigned long long)im->not_finite);
     if (im->too_far)
-        import_warn(im, "%llu triangles with a vertex farther out than %g m dropped, one at %g m", (unsigned long long)im->too_far, (double)IMPORT_FAR, im->farthest);
+        import_warn(im, "%llu triangles with a vertex farther out than %g m dropped, one at %g m",
+                    (unsigned long long)im->too_far, (double)IMPORT_FAR, im->farthest);
     if (im->bad_index)
         import_warn(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index);
     if (im->bad_polygon)
@@ -178,7 +181,8 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
                     (unsigned long long)im->bad_polygon);
     if (im->clear)
         import_warn(im,
-                    "%llu triangles of transparent materials ('%.100s') are left as holes: transparency is not simulated; 'cutoff = 0' for a "
+                    "%llu triangles of transparent materials ('%.100s') are left as holes: transparency is not "
+                    "simulated; 'cutoff = 0' for a "
                     "material in a scene file shows it",
                     (unsigned long long)im->clear, im->clear_name);
     if (im->m->triangles == before)
@@ -281,8 +285,10 @@ static bool unknown_material(importer *im, const scene_material *o) {
 
 typedef bool read_fn(importer *im, const scene_mesh *mesh);
 
-static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, void *user, read_fn *read, model *out, vit_text *why) {
-    importer im = {.s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path, .status = VIT_BAD_INPUT};
+static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, void *user, read_fn *read, model *out,
+                             vit_text *why) {
+    importer im = {
+        .s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path, .status = VIT_BAD_INPUT};
     *out = (model){0};
     im.override_used = calloc((size_t)s->material_count + 1, sizeof *im.override_used);
     bool fine = im.override_used ? true : import_fail(&im, "out of memory");

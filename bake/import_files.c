@@ -60,7 +60,8 @@ static const char *last_part(const char *path) {
     return slash ? slash + 1 : path;
 }
 
-/* Assimp goes on without a material file, without a word: the first that is nowhere is remembered. It may be tried for in more places. */
+/* Assimp goes on without a material file, without a word: the first that is nowhere is remembered. It may be tried for in more
+ * places. */
 static void note_materials(importer *im, const char *path, bool there) {
     if (!import_has_suffix(path, ".mtl"))
         return;

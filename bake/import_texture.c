@@ -81,7 +81,8 @@ static const char *decode(importer *im, const uint8_t *bytes, int size, model_im
 /* Assimp keeps embedded images as their file's bytes (height 0) or as BGRA texels. */
 static const char *decode_embedded(importer *im, const struct aiTexture *t, model_image *out) {
     if (t->mHeight == 0)
-        return t->mWidth > 0 && t->mWidth <= IMAGE_FILE_MOST ? decode(im, (const uint8_t *)t->pcData, (int)t->mWidth, out) : "is empty";
+        return t->mWidth > 0 && t->mWidth <= IMAGE_FILE_MOST ? decode(im, (const uint8_t *)t->pcData, (int)t->mWidth, out)
+                                                             : "is empty";
     if (t->mWidth < 1 || t->mWidth > IMPORT_EDGE || t->mHeight > IMPORT_EDGE)
         return "is larger than 16384 pixels";
     const size_t texels = (size_t)t->mWidth * t->mHeight;
@@ -120,7 +121,9 @@ static const char *load(importer *im, int embedded, model_image *out) {
     uint8_t *bytes = image_file_read(out->name, &size);
     if (bytes)
         import_note_file(im, out->name, (size_t)size);
-    const char *wrong = bytes ? decode(im, bytes, size, out) : file_trouble(out->name) ? file_trouble(out->name) : "is empty or cannot be read";
+    const char *wrong = bytes                     ? decode(im, bytes, size, out)
+                        : file_trouble(out->name) ? file_trouble(out->name)
+                                                  : "is empty or cannot be read";
     free(bytes);
     return wrong;
 }

@@ -56,19 +56,19 @@ static void send_image(const model_image *image, wire *to) {
 void wire_send_model(const importer *im, int images, wire *to) {
     const model *m = im->m;
     model_head head = {.vertices = m->vertices,
-                             .triangles = m->triangles,
-                             .materials = (uint64_t)m->material_count,
-                             .images = (uint64_t)(m->image_count - images),
-                             .cameras = (uint64_t)m->camera_count,
-                             .lights = (uint64_t)m->light_count,
-                             .meshes = (uint64_t)m->mesh_count,
-                             .files = m->files.count,
-                             .overrides = (uint64_t)im->s->material_count,
+                       .triangles = m->triangles,
+                       .materials = (uint64_t)m->material_count,
+                       .images = (uint64_t)(m->image_count - images),
+                       .cameras = (uint64_t)m->camera_count,
+                       .lights = (uint64_t)m->light_count,
+                       .meshes = (uint64_t)m->mesh_count,
+                       .files = m->files.count,
+                       .overrides = (uint64_t)im->s->material_count,
 #define X(name, meaning) .name = m->name,
-                             MODEL_COUNTS(X)
+                       MODEL_COUNTS(X)
 #undef X
-                             .texels = im->texels,
-                             .step = m->step};
+                           .texels = im->texels,
+                       .step = m->step};
     memcpy(head.default_highlight, m->default_highlight, sizeof head.default_highlight);
     wire_send(to, WIRE_MODEL, &head, sizeof head);
     put(to, m->position, 3 * (size_t)m->vertices * sizeof *m->position);
@@ -175,8 +175,9 @@ static bool good_light(model_light *l) {
 /* Counts that can be together. */
 static bool good_head(const importer *im, const model_head *h) {
     return h->triangles <= VIT_MAX_TRIANGLES && h->vertices <= 3 * h->triangles && h->materials <= h->triangles &&
-           h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->meshes <= MOST_NAMED && h->files <= MOST_NAMED &&
-           h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels && isfinite(h->step);
+           h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->meshes <= MOST_NAMED &&
+           h->files <= MOST_NAMED && h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels &&
+           isfinite(h->step);
 }
 
 /* Vertices and triangles behind those of the model, and what they refer to. */
@@ -230,7 +231,8 @@ static bool receive_materials(importer *im, const model_head *h, wire *from) {
 
 static bool receive_named(importer *im, const model_head *h, wire *from) {
     model *m = im->m;
-    size_t cameras = (size_t)m->camera_count, lights = (size_t)m->light_count, meshes = (size_t)m->mesh_count; /* the lists are as long as what they hold */
+    size_t cameras = (size_t)m->camera_count, lights = (size_t)m->light_count,
+           meshes = (size_t)m->mesh_count; /* the lists are as long as what they hold */
     if ((h->cameras > 0 && !import_room(im, &m->cameras, &cameras, cameras + (size_t)h->cameras, sizeof *m->cameras)) ||
         (h->lights > 0 && !import_room(im, &m->lights, &lights, lights + (size_t)h->lights, sizeof *m->lights)) ||
         (h->meshes > 0 && !import_room(im, &m->meshes, &meshes, meshes + (size_t)h->meshes, sizeof *m->meshes))) {

@@ -12,9 +12,9 @@
 /* Transparent materials that are shown after all, since too little would be left. */
 typedef enum import_shown { SHOWN_AS_SAID, SHOWN_INVISIBLE, SHOWN_HOLES } import_shown; /* none; those of alpha 0; all */
 
-enum { IMPORT_DEPTH = 256, IMPORT_EDGE = 16384 };  /* levels of the node tree; pixels of an image's edge */
-#define IMPORT_TEXELS ((uint64_t)1 << 30) /* of all images together: 4 GiB decoded */
-#define IMPORT_FAR 1e9f                   /* m: beyond, areas do not fit a float */
+enum { IMPORT_DEPTH = 256, IMPORT_EDGE = 16384 }; /* levels of the node tree; pixels of an image's edge */
+#define IMPORT_TEXELS ((uint64_t)1 << 30)         /* of all images together: 4 GiB decoded */
+#define IMPORT_FAR 1e9f                           /* m: beyond, areas do not fit a float */
 
 /* One mesh file being read. */
 typedef struct importer {
@@ -25,51 +25,51 @@ typedef struct importer {
     void *user;
     vit_text *why;
 
-    const char *file;          /* path as the scene gives it; every message starts with it */
+    const char *file; /* path as the scene gives it; every message starts with it */
     const struct aiScene *ai;
     bool gltf;                 /* the file is glTF: alpha modes and UV transforms follow its rules */
     struct material_use *uses; /* materials of this file that a triangle uses */
     size_t use_count, use_room;
-    bool *override_used;       /* one a scene material: some mesh has a material of that name */
+    bool *override_used; /* one a scene material: some mesh has a material of that name */
     size_t vertex_room, triangle_room, material_room, image_room;
-    uint64_t texels;           /* of all images so far */
+    uint64_t texels;                       /* of all images so far */
     uint64_t bad_index, not_finite, clear; /* triangles of this file dropped for an index, a NaN, transparency */
     uint64_t bad_polygon;                  /* polygons dropped for an index or too many corners */
     char clear_name[SCENE_NAME];           /* material of the first that was dropped for transparency */
     bool inverse;                          /* the file's opacities are transparencies (import_transparency.c) */
     import_shown shown;
     bool warned_colors, warned_morph, warned_bones;
-    struct texture_mean *means;         /* that were asked for, of this file */
+    struct texture_mean *means; /* that were asked for, of this file */
     size_t mean_count, mean_room;
-    uint64_t too_far;                   /* triangles of this file with a vertex beyond IMPORT_FAR */
-    double farthest;                    /* m */
-    char no_materials[SCENE_NAME];      /* material file that is not there; "" if all are */
-    uint32_t file_index;                /* in scene.meshes */
-    model_mesh *placed;                 /* a mesh of the file each: places and triangles so far */
-    unsigned lost_nodes;                /* that were NULL in Assimp's tree */
+    uint64_t too_far;              /* triangles of this file with a vertex beyond IMPORT_FAR */
+    double farthest;               /* m */
+    char no_materials[SCENE_NAME]; /* material file that is not there; "" if all are */
+    uint32_t file_index;           /* in scene.meshes */
+    model_mesh *placed;            /* a mesh of the file each: places and triangles so far */
+    unsigned lost_nodes;           /* that were NULL in Assimp's tree */
 
-    vit_status status;                  /* of what fails: VIT_BAD_INPUT, unless it is not the file's fault */
-    wire *to_parent;                    /* in the child; else NULL */
-    uint64_t allowed, allowed_texels;   /* bytes of the files and texels of the images that earn time and memory */
-    uint64_t mapped;                    /* bytes of address space that the child began with */
+    vit_status status;                /* of what fails: VIT_BAD_INPUT, unless it is not the file's fault */
+    wire *to_parent;                  /* in the child; else NULL */
+    uint64_t allowed, allowed_texels; /* bytes of the files and texels of the images that earn time and memory */
+    uint64_t mapped;                  /* bytes of address space that the child began with */
 } importer;
 
 /* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
 typedef struct material_use {
     unsigned ai_index;
-    float tint[3];             /* constant vertex colour, 1 if none */
-    model_material m;          /* image still -1 */
-    bool hole;                 /* all of it is transparent: its triangles are dropped */
-    bool cutoff_asked;         /* the scene file has a cutoff for it */
-    bool alpha_mapped;         /* the colour texture's alpha counts */
-    char image[SCENE_PATH];    /* file or "*index" as Assimp gives it; "" if none */
-    bool image_resolved;       /* `image` comes from the scene file: take it as it is */
-    int image_line;            /* there, for errors */
+    float tint[3];          /* constant vertex colour, 1 if none */
+    model_material m;       /* image still -1 */
+    bool hole;              /* all of it is transparent: its triangles are dropped */
+    bool cutoff_asked;      /* the scene file has a cutoff for it */
+    bool alpha_mapped;      /* the colour texture's alpha counts */
+    char image[SCENE_PATH]; /* file or "*index" as Assimp gives it; "" if none */
+    bool image_resolved;    /* `image` comes from the scene file: take it as it is */
+    int image_line;         /* there, for errors */
     unsigned uv_set;
     bool has_transform;
-    double uv[6];              /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */
-    bool warned_uv;            /* of a mesh without texture coordinates: one warning will do */
-    int index;                 /* in model.materials, -1 until a triangle uses it */
+    double uv[6];   /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */
+    bool warned_uv; /* of a mesh without texture coordinates: one warning will do */
+    int index;      /* in model.materials, -1 until a triangle uses it */
 } material_use;
 
 /* Writes "file: ..." into why->text and returns false. */
@@ -85,10 +85,10 @@ bool import_has_suffix(const char *file, const char *suffix); /* ".PLY" is ".ply
  * them. Every other file passes. */
 bool import_check_ply(importer *im);
 
-/* import_child.c: has a child process read the file and appends what it sends to the model. Foreign readers end the process on some
- * malformed files, by an assertion or a bad access, while they read, while they are asked, or while they clean up; others they
- * do not come back from. None of it happens here: that child has limits of processor time and memory, which grow with the files
- * that it opens. */
+/* import_child.c: has a child process read the file and appends what it sends to the model. Foreign readers end the process on
+ * some malformed files, by an assertion or a bad access, while they read, while they are asked, or while they clean up; others
+ * they do not come back from. None of it happens here: that child has limits of processor time and memory, which grow with the
+ * files that it opens. */
 bool import_in_child(importer *im, const scene_mesh *mesh);
 /* More bytes of files, more texels of images: more time and memory. */
 void import_allow(importer *im, size_t bytes);
@@ -116,24 +116,25 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
 /* Loads the use's image and appends its material to the model, on first call. */
 bool import_material_index(importer *im, material_use *use, uint32_t *index);
 
-/* import_material.c: of Assimp's material: `count` floats, if it has as many; keys are macros of three arguments, key, type, index. */
+/* import_material.c: of Assimp's material: `count` floats, if it has as many; keys are macros of three arguments, key, type,
+ * index. */
 bool import_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count);
 float import_clamp(float value, float most); /* to 0..most; NaN is 0 */
 
-/* import_shine.c: kind, lobe, glass and what they leave of the albedo, once colour, emission and alpha are known. False: a texture
- * that is needed (strict), or out of memory. */
+/* import_shine.c: kind, lobe, glass and what they leave of the albedo, once colour, emission and alpha are known. False: a
+ * texture that is needed (strict), or out of memory. */
 bool import_shine(importer *im, material_use *use, const struct aiMaterial *ai);
 /* What the scene file says of them. */
 void import_override_shine(importer *im, model_material *m, const scene_material *o);
 /* Last: no more is reflected than arrives, and nothing stays that the kind has no use for. */
 void import_settle_shine(model_material *m);
 
-/* import_texture_mean.c: means over all texels, 0..1, of colours (as if they were sRGB if `srgb`) and alpha. All 1 where the image is
- * missing or broken, with a warning that names `material` (not strict), or without one if that is NULL. */
+/* import_texture_mean.c: means over all texels, 0..1, of colours (as if they were sRGB if `srgb`) and alpha. All 1 where the
+ * image is missing or broken, with a warning that names `material` (not strict), or without one if that is NULL. */
 bool import_texture_mean(importer *im, const char *name, const char *material, bool srgb, float mean[4]);
 /* Of a texture of Assimp's material; all 1 if it has none. Its colours are sRGB but for metalness and roughness. */
-bool import_texture_mean_of(importer *im, const struct aiMaterial *ai, enum aiTextureType type, unsigned index, const char *material,
-                            float mean[4]);
+bool import_texture_mean_of(importer *im, const struct aiMaterial *ai, enum aiTextureType type, unsigned index,
+                            const char *material, float mean[4]);
 
 /* import_texture.c: decodes image `name` of this file; its texels are the caller's to free. What is wrong with it, or NULL. */
 const char *import_image(importer *im, const char *name, bool resolved, model_image *out);

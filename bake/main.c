@@ -25,7 +25,8 @@ typedef struct bake {
 static void on_signal(int number) {
     static const char line[] = "\nvitrine-bake: interrupted\n";
     (void)number;
-    pack_abandon(); /* NOLINT(bugprone-signal-handler,cert-sig30-c,cert-msc54-cpp): it does nothing but unlink(), which POSIX allows here */
+    pack_abandon(); /* NOLINT(bugprone-signal-handler,cert-sig30-c,cert-msc54-cpp): it does nothing but unlink(), which POSIX
+                       allows here */
     if (write(STDERR_FILENO, line, sizeof line - 1) < 0)
         _exit(VIT_FAILED);
     _exit(VIT_FAILED);
@@ -35,7 +36,8 @@ static void warn_of_missed_effects(bake *b) {
     const effects_decided *e = &b->packed.plan.effects;
     for (int bit = 0; bit < 64; bit++)
         if (e->missed >> bit & 1)
-            progress_line(&b->progress, true, "warning: %s is left out: %s", effects_name(bit), e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
+            progress_line(&b->progress, true, "warning: %s is left out: %s", effects_name(bit),
+                          e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
 }
 
 static bool fits(const options *o) {
@@ -111,8 +113,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
 
 /* A line each: name, what it adds, why. */
 static void explain_effects(const pipeline_packed *p, const adds *all) {
-    printf("effects %24s %16s   of %llu bytes and %llu work units a frame\n", "bytes", "work units", (unsigned long long)all->device_bytes,
-           (unsigned long long)all->work);
+    printf("effects %24s %16s   of %llu bytes and %llu work units a frame\n", "bytes", "work units",
+           (unsigned long long)all->device_bytes, (unsigned long long)all->work);
     for (int bit = 0; bit < 64; bit++) {
         const adds_of *a = &all->effect[bit];
         if (!effects_name(bit))
@@ -135,7 +137,8 @@ static vit_status explain(bake *b, vit_text *why) {
     if (status != VIT_OK)
         return status;
     if (b->chosen.tried > 0)
-        printf("quality \"auto\": { %s}, of %u tried %s\n\n", b->chosen.text, b->chosen.tried, b->chosen.right ? "the cheapest that is right" : "the best");
+        printf("quality \"auto\": { %s}, of %u tried %s\n\n", b->chosen.text, b->chosen.tried,
+               b->chosen.right ? "the cheapest that is right" : "the best");
     adds all;
     status = adds_measure(&b->packed, p->threads, &b->progress, &all, why);
     progress_end(&b->progress);
@@ -143,25 +146,31 @@ static vit_status explain(bake *b, vit_text *why) {
         return status;
     explain_effects(&b->packed, &all);
     printf("\nscene\n  %u x %u, %u frames at %g a second\n", s->width, s->height, s->frames, (double)s->fps);
-    printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n", s->triangles,
-           (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite, (unsigned long long)b->packed.model->not_triangles, s->nodes,
-           b->packed.bvh->depth);
-    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.reach->area, b->packed.reach->dark_front + b->packed.reach->dark_back);
-    printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height, 100 * p->atlas.occupancy);
+    printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n",
+           s->triangles, (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite,
+           (unsigned long long)b->packed.model->not_triangles, s->nodes, b->packed.bvh->depth);
+    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.reach->area,
+           b->packed.reach->dark_front + b->packed.reach->dark_back);
+    printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height,
+           100 * p->atlas.occupancy);
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
                (double)s->radius);
     if (b->packed.guides)
         printf("  guided photons: where paths light what is seen, one stands for %.3g even ones\n", b->packed.guided_gain);
     if (s->cells > 0)
-        printf("  zones and areas: %u cells, %u groups of them seen from the path, %u patches, %.4g m2 open to light; 32 zones miss %.2g %% of the weight\n",
-               s->cells, b->packed.zones.receivers, b->packed.zones.patches, b->packed.zones.open_area, 100 * b->packed.zones.wrong);
-    printf("\nbounds, the largest of any frame\n  hierarchy nodes %u, list entries %u, depth slices %u from %u on, key bits %u\n", s->max_nodes, s->max_list,
-           s->slice_count, s->slice_first, s->key_bits);
+        printf("  zones and areas: %u cells, %u groups of them seen from the path, %u patches, "
+               "%.4g m2 open to light; 32 zones miss %.2g %% of the weight\n",
+               s->cells, b->packed.zones.receivers, b->packed.zones.patches, b->packed.zones.open_area,
+               100 * b->packed.zones.wrong);
+    printf(
+        "\nbounds, the largest of any frame\n  hierarchy nodes %u, list entries %u, depth slices %u from %u on, key bits %u\n",
+        s->max_nodes, s->max_list, s->slice_count, s->slice_first, s->key_bits);
     printf("\nbuffers\n");
     for (uint32_t i = 0; i < need.buffer_count; i++)
         printf("  %-14s %12llu  %s\n", need.buffers[i].name, (unsigned long long)need.buffers[i].bytes, need.buffers[i].effect);
-    printf("\n  device bytes %llu, host bytes %zu, pack bytes %zu\n", (unsigned long long)need.device_bytes, need.host_bytes, b->packed.size);
+    printf("\n  device bytes %llu, host bytes %zu, pack bytes %zu\n", (unsigned long long)need.device_bytes, need.host_bytes,
+           b->packed.size);
     return VIT_OK;
 }
 
@@ -184,8 +193,8 @@ static vit_status run(bake *b, vit_text *why) {
     if (status == VIT_OK && b->options.output)
         status = pack_save(b->options.output, packed->bytes, packed->size, why);
     if (status == VIT_OK && b->options.output)
-        progress_line(&b->progress, false, "%s: %u triangles, %u frames, %.1f MB", b->options.output, b->pipeline.model.triangles,
-                      packed->plan.scene.frames, (double)packed->size * 1e-6);
+        progress_line(&b->progress, false, "%s: %u triangles, %u frames, %.1f MB", b->options.output,
+                      b->pipeline.model.triangles, packed->plan.scene.frames, (double)packed->size * 1e-6);
     return status;
 }
 

@@ -9,8 +9,8 @@
  *     l = sqrt((x * x + y * y) + z * z);  n = (x / l, y / l, z / l) */
 void octahedral_decode(const int s[2], int most, float n[3]);
 
-/* The nearest of the four codes around n, which need not be of unit length; the zero vector gives 0, 0, which is +z. Off by less
- * than 5e-5 radians with 16 bits, 1.3e-2 with 8 (tests/unit/test_geometry.c and test_quantise.c measure it). */
+/* The nearest of the four codes around n, which need not be of unit length; the zero vector gives 0, 0, which is +z. Off by
+ * less than 5e-5 radians with 16 bits, 1.3e-2 with 8 (tests/unit/test_geometry.c and test_quantise.c measure it). */
 void octahedral_encode(const float n[3], int most, int s[2]);
 
 #endif

@@ -7,18 +7,18 @@
 typedef struct options {
     const char *input, *output;
     bool explain, strict, quiet, all_formats, no_check, help, version, list, json, table;
-    unsigned threads;          /* 0: all cores */
-    const char *device;        /* as vit_device_find() takes it; NULL: the default */
+    unsigned threads;   /* 0: all cores */
+    const char *device; /* as vit_device_find() takes it; NULL: the default */
     /* Overrides of the scene file; 0 or NULL: none. */
     int width, height, frames;
-    double fit;                /* milliseconds a frame, 0: none */
-    double fit_work;           /* work units a frame, a whole number, 0: none */
-    double exposure;           /* of all frames; 0 with exposure_given: auto */
+    double fit;      /* milliseconds a frame, 0: none */
+    double fit_work; /* work units a frame, a whole number, 0: none */
+    double exposure; /* of all frames; 0 with exposure_given: auto */
     bool exposure_given;
-    const char *quality;       /* auto or stated */
+    const char *quality;            /* auto or stated */
     const char *settings[SETTINGS]; /* values of settings of the quality block, each known to be allowed */
     bool effects_given;
-    int effects_choice;        /* as in `scene` */
+    int effects_choice; /* as in `scene` */
     uint64_t effects;
 } options;
 

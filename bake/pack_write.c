@@ -92,8 +92,9 @@ vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vi
     return VIT_OK;
 }
 
-/* A variable that outlives a call, as few do (those that signal handlers set, and cost/spread.c): a handler gets no argument, and what it has to remove is the
- * file that pack_save() is writing at that moment. `armed` is set only while `path` is complete. */
+/* A variable that outlives a call, as few do (those that signal handlers set, and cost/spread.c): a handler gets no argument,
+ * and what it has to remove is the file that pack_save() is writing at that moment. `armed` is set only while `path` is
+ * complete. */
 static struct {
     volatile sig_atomic_t armed;
     char path[PATH_MAX];

@@ -14,11 +14,12 @@ typedef struct pack_sections {
 vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vit_text *why);
 
 /* Writes `bytes` to a temporary file beside `path`, syncs and renames it: there is never a partial file under `path`.
- * The temporary file, PATH.tmp-PID-N, is removed on failure and by pack_abandon(), which a signal handler may call; what a killed process
- * left of it is removed by the next pack_save() to the same path. */
+ * The temporary file, PATH.tmp-PID-N, is removed on failure and by pack_abandon(), which a signal handler may call; what a
+ * killed process left of it is removed by the next pack_save() to the same path. */
 vit_status pack_save(const char *path, const void *bytes, size_t size, vit_text *why);
 void pack_abandon(void);
-/* Whether pack_save() could write there now: what is known before the work. Tries it with a page, and leaves nothing. VIT_FAILED. */
+/* Whether pack_save() could write there now: what is known before the work. Tries it with a page, and leaves nothing.
+ * VIT_FAILED. */
 vit_status pack_can_save(const char *path, vit_text *why);
 /* Likewise for file `name` of a folder that may still have to be made, and folders above it. */
 vit_status pack_can_make(const char *folder, const char *name, vit_text *why);

@@ -31,8 +31,8 @@ typedef struct photon_surface {
 /* The surface `distance` metres along the unit direction, on `triangle`; as surface_at() of kernels/surface.clh. */
 photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle);
 /* The same through a footprint of `cone` metres a metre of distance; b: the hit's barycentric weights. */
-photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle, float cone,
-                                   float b[3]);
+photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
+                                   float cone, float b[3]);
 /* False: the ray meets the triangle where its material is cut out; as ray_opaque() of kernels/ray.clh. */
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle);
 /* The same of the place of barycentric weights b. */

@@ -1,8 +1,8 @@
 /* pipeline_load, once a scene: import -> tracks -> lamps' planes -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
- * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> guides -> emitters -> photons; with
- * radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it, photons again; then zones
- * and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds (the whole path is played) -> effects
- * that rays met -> pack. */
+ * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> guides -> emitters
+ * -> photons; with radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it,
+ * photons again; then zones and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds
+ * (the whole path is played) -> effects that rays met -> pack. */
 #include "pipeline.h"
 #include "bounds.h"
 #include "file_trouble.h"
@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GUIDED_BY (VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(GLOSS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
+#define GUIDED_BY                                                                                                              \
+    (VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(GLOSS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
 #define COARSE 0x1p-16 /* of the scene's size: coarser floats in its files are worth a warning */
 
 static vit_status out_of_memory(vit_text *why) {
@@ -40,7 +41,8 @@ static vit_status file_fails(const scene *s, int line, const char *what, const c
     return VIT_BAD_INPUT;
 }
 
-/* What a scene file names can be opened: known before the first of it is imported. A missing texture is a matter of --strict. */
+/* What a scene file names can be opened: known before the first of it is imported. A missing texture is a matter of --strict.
+ */
 static vit_status files_are_there(const scene *s, vit_text *why) {
     for (int i = 0; i < s->mesh_count; i++) {
         const char *trouble = file_trouble(s->meshes[i].file);
@@ -72,7 +74,8 @@ static vit_status part_lamps(pipeline *p, vit_text *why) {
     if (!lamp_plane(&p->model, p->tracks.cameras, (uint32_t)p->scene.frames, ray_offset, &moved))
         return out_of_memory(why);
     if (moved > 0)
-        progress_line(p->progress, false, "%u triangles that emit lie in the plane of others: moved by %.2g m to the camera's side", moved,
+        progress_line(p->progress, false,
+                      "%u triangles that emit lie in the plane of others: moved by %.2g m to the camera's side", moved,
                       LAMP_PLANE * (double)ray_offset);
     return VIT_OK;
 }
@@ -93,10 +96,14 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
 /* What of MTL's highlights is not what the file's letter says. */
 static void say_highlights(const model *m, progress *p) {
     if (m->default_highlights > 0)
-        progress_line(p, false, "the highlights of %llu materials are what exporters write unasked (%s): matt ('specular' gives them one)",
-                      (unsigned long long)m->default_highlights, m->default_highlight);
+        progress_line(
+            p, false,
+            "the highlights of %llu materials are what exporters write unasked (%s): matt ('specular' gives them one)",
+            (unsigned long long)m->default_highlights, m->default_highlight);
     if (m->principled > 0)
-        progress_line(p, false, "the highlights of %llu materials (Ks 0.5, Ka grey) are Blender's Principled shader: 4 %% reflection at that level, or metal",
+        progress_line(p, false,
+                      "the highlights of %llu materials (Ks 0.5, "
+                      "Ka grey) are Blender's Principled shader: 4 %% reflection at that level, or metal",
                       (unsigned long long)m->principled);
 }
 
@@ -215,7 +222,7 @@ static double guides_gain(const guides *g, const pipeline_packed *out) {
     double all = 0, gain = 0;
     for (int pass = 0; pass < 2; pass++)
         for (uint32_t i = 0; i < lights + 2; i++) {
-            const uint32_t paths = i == lights      ? out->plan.area_paths
+            const uint32_t paths = i == lights       ? out->plan.area_paths
                                    : i == lights + 1 ? out->plan.sky_paths
                                                      : out->plan.baked_paths[i] + out->tracks.lights[i].path_count;
             all += pass == 0 ? (double)paths : 0;
@@ -225,7 +232,8 @@ static double guides_gain(const guides *g, const pipeline_packed *out) {
     return gain;
 }
 
-/* Guides of the scene's lights, and the paths shared by what they are worth. Where nothing is worth anything, photons go evenly. */
+/* Guides of the scene's lights, and the paths shared by what they are worth. Where nothing is worth anything, photons go
+ * evenly. */
 static vit_status guide_photons(pipeline *p, const scene *s, pipeline_packed *out, vit_text *why) {
     const vit_scene *c = &out->plan.scene;
     pipeline_guides *kept = &p->guided;
@@ -281,9 +289,11 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
     }
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
-            lights[count++] = (photons_light){.light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = guides_of(out->guides, i)};
+            lights[count++] = (photons_light){
+                .light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = guides_of(out->guides, i)};
     if (out->plan.area_paths > 0)
-        lights[count++] = (photons_light){.paths = out->plan.area_paths, .area = &out->plan.area, .guide = guides_of(out->guides, out->tracks.light_count)};
+        lights[count++] = (photons_light){
+            .paths = out->plan.area_paths, .area = &out->plan.area, .guide = guides_of(out->guides, out->tracks.light_count)};
     if (out->plan.sky_paths > 0)
         lights[count++] = sky_source(p, out);
     if (count > 0) {
@@ -410,7 +420,8 @@ static vit_status place_emitters(const pipeline *p, pipeline_packed *out, vit_te
         return out_of_memory(why);
     if (s->area_samples > 0)
         emitters_near(&out->plan.area, s->area_samples, out->plan.materials);
-    const vit_status status = s->area_samples > 0 ? emitters_sets(&out->plan.area, s->area_samples, out->emitters, why) : VIT_OK;
+    const vit_status status =
+        s->area_samples > 0 ? emitters_sets(&out->plan.area, s->area_samples, out->emitters, why) : VIT_OK;
     if (s->sky_samples > 0)
         sky_sets(&p->sky, s->sky_samples, out->emitters + (size_t)VIT_PATTERNS * s->area_samples);
     return status;
@@ -437,7 +448,9 @@ static vit_status measure(const pipeline *p, const pipeline_choice *c, pipeline_
     point_sections(p, out);
     cut_frames(c, out);
     effects_reached *reached = calloc(EFFECTS_RECORDS(out->plan.scene.materials), sizeof *reached);
-    in.reached = (out->plan.scene.effects | out->plan.effects.forced_off) & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)) ? reached : NULL; /* else there is nothing to find out */
+    in.reached = (out->plan.scene.effects | out->plan.effects.forced_off) & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS))
+                     ? reached
+                     : NULL; /* else there is nothing to find out */
     if (status == VIT_OK && !reached)
         status = out_of_memory(why);
     if (status == VIT_OK)

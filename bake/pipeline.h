@@ -68,8 +68,8 @@ typedef struct pipeline_packed {
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
-    const guides *guides; /* the pipeline's; NULL: photons are not guided */
-    double guided_gain;   /* how many even paths a guided one stands for, where paths are worth something */
+    const guides *guides;  /* the pipeline's; NULL: photons are not guided */
+    double guided_gain;    /* how many even paths a guided one stands for, where paths are worth something */
     vit_emitter *emitters; /* section EMIT */
     vit_photon *photons;
     uint32_t *met; /* a word a material: 1 where baked photons met it */

@@ -7,13 +7,14 @@
 #include <string.h>
 
 #define PACKET 16u
-#define PLAN_BY_POWER 0.2 /* of the paths are shared by power where the lights' worth is known: what was not found to matter may still */
+#define PLAN_BY_POWER                                                                                                          \
+    0.2 /* of the paths are shared by power where the lights' worth is known: what was not found to matter may still */
 #define TWO_PI 6.283185307179586
 
-/* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost edges
- * among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc of the radius
- * is to hold, on average, no fewer photons than make a mottled estimate, and no more than make it smooth: with ever more photons the
- * radius goes to 0. */
+/* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost
+ * edges among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc
+ * of the radius is to hold, on average, no fewer photons than make a mottled estimate, and no more than make it smooth: with
+ * ever more photons the radius goes to 0. */
 #define AUTO_OF_WAY 0.2
 #define AUTO_LEAST_PHOTONS 4.0
 #define AUTO_MOST_PHOTONS 150.0
@@ -45,7 +46,8 @@ static uint32_t share(const scene *s, double power, double total, const double *
 }
 
 /* Nobody gets paths where no surface could store a photon. */
-static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, const double *worth, plan *p, vit_text *why) {
+static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, const double *worth, plan *p,
+                              vit_text *why) {
     const double area = sum_of(p->area.flux) / TWO_PI;
     const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
@@ -57,7 +59,8 @@ static vit_status share_paths(const scene *s, tracks *t, const sky *round, const
     p->area_paths = share(s, area, total, worth ? worth + t->light_count : NULL);
     p->sky_paths = share(s, above, total, worth ? worth + t->light_count + 1 : NULL);
     for (uint32_t i = 0; i < t->light_count; i++) {
-        uint32_t paths = share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total, worth ? worth + i : NULL);
+        uint32_t paths =
+            share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total, worth ? worth + i : NULL);
         if (paths == 0)
             continue;
         if (t->still[i]) {
@@ -73,7 +76,8 @@ static vit_status share_paths(const scene *s, tracks *t, const sky *round, const
     }
     p->scene.paths = first;
     if (first > 1000000) {
-        snprintf(why->text, sizeof why->text, "quality.photons: at most 1000000 paths in all, with %u lights got %u", t->light_count, first);
+        snprintf(why->text, sizeof why->text, "quality.photons: at most 1000000 paths in all, with %u lights got %u",
+                 t->light_count, first);
         return VIT_BAD_INPUT;
     }
     return VIT_OK;
@@ -119,7 +123,8 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
     uint64_t e = 0;
     for (int i = 0; i < m->material_count; i++)
         if (m->materials[i].triangles > 0)
-            e |= effects_of_material(&p->materials[i]) & ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
+            e |= effects_of_material(&p->materials[i]) &
+                 ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
     return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
 }
 
@@ -150,7 +155,8 @@ static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
         c->area_samples = (uint32_t)s->quality.light_samples;
     if (s->sky.light && sum_of(round->irradiance) > 0)
         c->sky_samples = (uint32_t)s->quality.sky_samples;
-    return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) | (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
+    return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) |
+           (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
 }
 
 /* kernels/METHODS.md, "Clusters" (16): slices as deep as they are wide. */
@@ -184,8 +190,8 @@ static bool has_paths(const tracks *t, const plan *p) {
     return some;
 }
 
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r, const sky *round,
-                     unsigned threads, plan *out, vit_text *why) {
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r,
+                     const sky *round, unsigned threads, plan *out, vit_text *why) {
     memset(out, 0, sizeof *out);
     vit_scene *c = &out->scene;
     out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
@@ -270,7 +276,8 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     return VIT_OK;
 }
 
-vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p, vit_text *why) {
+vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p,
+                      vit_text *why) {
     const vit_status status = share_paths(s, t, round, r, worth, p, why);
     p->area_paths = p->scene.effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = p->scene.effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
@@ -279,9 +286,11 @@ vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *roun
 
 double plan_radius(const plan *p, double stored) {
     const double of_one = sqrt(p->lit_area / (3.14159265358979 * stored)); /* its disc holds one photon on average */
-    const double radius = fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
+    const double radius =
+        fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
     int exponent;
-    const double fraction = frexp(radius, &exponent); /* to 12 bits: rays' lengths may differ in their last bits from processor to processor */
+    const double fraction =
+        frexp(radius, &exponent); /* to 12 bits: rays' lengths may differ in their last bits from processor to processor */
     return ldexp(floor(fraction * 4096 + 0.5) / 4096, exponent);
 }
 

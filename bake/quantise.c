@@ -31,7 +31,8 @@ static void snap_normals(model *m) {
 
 static bool has_area(const model *m, const uint32_t *corner) {
     float n[3];
-    triangle_normal(m->position + 3 * (size_t)corner[0], m->position + 3 * (size_t)corner[1], m->position + 3 * (size_t)corner[2], n);
+    triangle_normal(m->position + 3 * (size_t)corner[0], m->position + 3 * (size_t)corner[1],
+                    m->position + 3 * (size_t)corner[2], n);
     return n[0] != 0 || n[1] != 0 || n[2] != 0;
 }
 

@@ -183,9 +183,12 @@ static bool parse(const place *at, const char *missing, config_t *config) {
     /* In [ ] all elements have one type, which nobody expects. */
     const bool mixed = text && strstr(text, "mismatched element type");
     const bool lost = missing[0] && text && strstr(text, "include");
-    (void)snprintf(at->why->text, sizeof at->why->text, "%.200s:%d: %s%s%.100s%s", file ? file : at->path, config_error_line(config),
-                   text ? text : "cannot be read", mixed ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)" : lost ? ": '" : "", lost ? missing : "",
-                   lost ? "' is not there" : "");
+    (void)snprintf(at->why->text, sizeof at->why->text, "%.200s:%d: %s%s%.100s%s", file ? file : at->path,
+                   config_error_line(config), text ? text : "cannot be read",
+                   mixed  ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)"
+                   : lost ? ": '"
+                          : "",
+                   lost ? missing : "", lost ? "' is not there" : "");
     for (char *c = at->why->text; *c; c++)
         if (iscntrl((unsigned char)*c))
             *c = '?';
@@ -200,7 +203,14 @@ static bool read_top(reader *r, const config_setting_t *root) {
 }
 
 static void set_defaults(scene *s) {
-    *s = (scene){.width = 1280, .height = 720, .frames = 48, .fps = 24.0, .camera_exposure = 1.0, .exposure_factor = 1.0, .check = true, .sky = {.scale = 1.0}};
+    *s = (scene){.width = 1280,
+                 .height = 720,
+                 .frames = 48,
+                 .fps = 24.0,
+                 .camera_exposure = 1.0,
+                 .exposure_factor = 1.0,
+                 .check = true,
+                 .sky = {.scale = 1.0}};
     s->quality = settings_default;
     s->quality_auto = true;
 }

@@ -15,7 +15,8 @@ static bool read_name(const place *at, const config_setting_t *setting, const ch
             (void)strncat(names, names[0] ? ", " : "", sizeof names - strlen(names) - 1);
             (void)strncat(names, effects_name(bit), sizeof names - strlen(names) - 1);
         }
-    return fields_fail(at, setting, "'effects': %s%.60s%s: \"auto\", \"all\", or a list of: %s", name ? "'" : "", name ? name : "no name",
+    return fields_fail(at, setting, "'effects': %s%.60s%s: \"auto\", \"all\", or a list of: %s", name ? "'" : "",
+                       name ? name : "no name",
                        name ? (effect ? "' follows from the scene's lights and quality" : "' is no effect") : "", names);
 }
 
@@ -31,7 +32,8 @@ bool reader_effects(reader *r, const config_setting_t *root) {
         return true;
     }
     if (word || !(config_setting_is_array(setting) || config_setting_is_list(setting)))
-        return read_name(&r->at, setting, word, &r->s->effects) && fields_fail(&r->at, setting, "'effects' takes a list: [\"%.60s\"]", word);
+        return read_name(&r->at, setting, word, &r->s->effects) &&
+               fields_fail(&r->at, setting, "'effects' takes a list: [\"%.60s\"]", word);
     r->s->effects_choice = EFFECTS_LISTED;
     for (int i = 0; i < config_setting_length(setting); i++)
         if (!read_name(&r->at, setting, config_setting_get_string_elem(setting, i), &r->s->effects))

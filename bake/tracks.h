@@ -6,12 +6,12 @@
 #include "vitrine_pack.h"
 
 typedef struct tracks {
-    vit_camera *cameras;       /* frames */
-    vit_light *lights;         /* frames * light_count; path_first and path_count are the planner's */
+    vit_camera *cameras; /* frames */
+    vit_light *lights;   /* frames * light_count; path_first and path_count are the planner's */
     uint32_t light_count;
-    bool *still;               /* a light: every frame's record is the same */
-    double near;               /* metres: the scene's, or 1/1000 of the diagonal of the model's box but at most 0.1 m */
-    double tan_half_fov;       /* the path's largest, vertical */
+    bool *still;         /* a light: every frame's record is the same */
+    double near;         /* metres: the scene's, or 1/1000 of the diagonal of the model's box but at most 0.1 m */
+    double tan_half_fov; /* the path's largest, vertical */
 } tracks;
 
 /* Evaluates the path at times frame / fps. Positions, targets, power, fov and exposure follow monotone (Fritsch-Carlson)

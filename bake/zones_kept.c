@@ -16,7 +16,8 @@ static bool is_of(const zones_kept_one *o, const zones_input *in) {
     const vit_scene *s = in->scene;
     return o->asked > 0 && !(o->radius < s->radius) && !(o->radius > s->radius) && !(o->flatten < s->flatten) &&
            !(o->flatten > s->flatten) && o->width == s->width && o->height == s->height && o->bounces == s->bounces &&
-           o->lights == s->lights && o->zones == in->zones && o->by_light == in->by_light && o->areas == in->areas && o->guided == (in->guides != NULL) &&
+           o->lights == s->lights && o->zones == in->zones && o->by_light == in->by_light && o->areas == in->areas &&
+           o->guided == (in->guides != NULL) &&
            (s->lights == 0 || memcmp(o->gives, in->gives_photons, s->lights * sizeof *o->gives) == 0);
 }
 

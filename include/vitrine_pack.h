@@ -5,8 +5,9 @@
  *   | header | table     | zero bytes          | META    |       | GOLD    |   little-endian throughout
  *   +--------+-----------+------------- ... ---+---------+- ... -+---------+
  *
- *   header   char magic[8] "VITRINE\0" | u32 version | u32 sections n | u64 file size | u64 XXH3-64 of the table | 32 zero bytes
- *   entry    char code[4] | u32 record bytes | u64 offset | u64 bytes | u64 XXH3-64 of the section      (VIT_SECTIONS order)
+ *   header   char magic[8] "VITRINE\0" | u32 version | u32 sections n | u64 file size | u64 XXH3-64 of the table | 32 zero
+ * bytes entry    char code[4] | u32 record bytes | u64 offset | u64 bytes | u64 XXH3-64 of the section      (VIT_SECTIONS
+ * order)
  *
  * Every section is present, exactly once and in the order of VIT_SECTIONS; an empty one has 0 bytes. Sections do not overlap
  * and their offsets ascend; bytes between them are 0; the file ends with the last section. The loader checks all of this,
@@ -20,7 +21,9 @@
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
 #define VIT_PACK_VERSION 4u
 #define VIT_PACK_ALIGN 4096u
-#define VIT_WORD 4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by */
+#define VIT_WORD                                                                                                               \
+    4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
+        */
 
 /* Does this machine have numbers in another order than the file? */
 #ifndef __BYTE_ORDER__
@@ -29,32 +32,32 @@
 #define VIT_BIG_ENDIAN (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
- * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how much of
- * the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on area lights, then
- * sets of directions to the sky. SKYT: the sky's picture. */
-#define VIT_SECTIONS(X)                                                                                                          \
-    X(META, vit_scene, 1u)                                                                                                       \
-    X(CAMS, vit_camera, s->frames)                                                                                               \
-    X(LITE, vit_light, (uint64_t)s->frames *s->lights)                                                                           \
-    X(GEOM, vit_triangle, s->triangles)                                                                                          \
-    X(ATTR, vit_attributes, s->triangles)                                                                                        \
-    X(BVHN, vit_bvh_node, s->nodes)                                                                                              \
-    X(MATL, vit_material, s->materials)                                                                                          \
-    X(TEXR, vit_texture, s->textures)                                                                                            \
-    X(MIPS, vit_mip, s->mips)                                                                                                    \
-    X(ATLS, vit_u32, s->texels)                                                                                                  \
-    X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                  \
-    X(CELL, vit_cell, s->cells)                                                                                                  \
-    X(EMIT, vit_emitter, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                             \
-    X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                                               \
-    X(PHOT, vit_photon, s->baked)                                                                                                \
+ * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how
+ * much of the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on
+ * area lights, then sets of directions to the sky. SKYT: the sky's picture. */
+#define VIT_SECTIONS(X)                                                                                                        \
+    X(META, vit_scene, 1u)                                                                                                     \
+    X(CAMS, vit_camera, s->frames)                                                                                             \
+    X(LITE, vit_light, (uint64_t)s->frames * s->lights)                                                                        \
+    X(GEOM, vit_triangle, s->triangles)                                                                                        \
+    X(ATTR, vit_attributes, s->triangles)                                                                                      \
+    X(BVHN, vit_bvh_node, s->nodes)                                                                                            \
+    X(MATL, vit_material, s->materials)                                                                                        \
+    X(TEXR, vit_texture, s->textures)                                                                                          \
+    X(MIPS, vit_mip, s->mips)                                                                                                  \
+    X(ATLS, vit_u32, s->texels)                                                                                                \
+    X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                \
+    X(CELL, vit_cell, s->cells)                                                                                                \
+    X(EMIT, vit_emitter, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                           \
+    X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                  \
+    X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)
 
 typedef enum vit_section {
 #define X(code, type, records) VIT_SECTION_##code,
     VIT_SECTIONS(X)
 #undef X
-    VIT_SECTION_COUNT
+        VIT_SECTION_COUNT
 } vit_section;
 
 typedef struct vit_pack_header {
@@ -74,17 +77,17 @@ typedef struct vit_pack_entry {
     uint64_t hash;
 } vit_pack_entry;
 
-/* Fills the fields of `s` that follow from others (tiles_x, tiles_y, samples, photons, key_bits, key_bits_x .. key_bits_n, levels,
- * level_first, mask_words): the baker calls it, the loader calls it on a copy and compares. All other counts and `effects` must
- * be set before. VIT_BAD_INPUT: a count is out of range or a product overflows; the text begins with the field's name.
- * `why` may be NULL. */
+/* Fills the fields of `s` that follow from others (tiles_x, tiles_y, samples, photons, key_bits, key_bits_x .. key_bits_n,
+ * levels, level_first, mask_words): the baker calls it, the loader calls it on a copy and compares. All other counts and
+ * `effects` must be set before. VIT_BAD_INPUT: a count is out of range or a product overflows; the text begins with the field's
+ * name. `why` may be NULL. */
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
 
 /* The hash of frames in this format. */
 static inline vit_u32 *vit_gold_hash(vit_gold *g, vit_format format) {
     switch (format) {
-#define X(name, word, bytes, word_bytes, meaning)                                                                                \
-    case VIT_FORMAT_##name:                                                                                                      \
+#define X(name, word, bytes, word_bytes, meaning)                                                                              \
+    case VIT_FORMAT_##name:                                                                                                    \
         return g->word;
         VIT_FORMATS(X)
 #undef X
@@ -94,8 +97,8 @@ static inline vit_u32 *vit_gold_hash(vit_gold *g, vit_format format) {
 
 /* The effect `bit` and all that make no sense without it. */
 static inline uint64_t vit_effects_upon(uint64_t bit) {
-#define X(effect, needed)                                                                                                        \
-    if (bit & VIT_BIT(needed))                                                                                                   \
+#define X(effect, needed)                                                                                                      \
+    if (bit & VIT_BIT(needed))                                                                                                 \
         bit |= VIT_BIT(effect);
     VIT_EFFECT_NEEDS(X)
 #undef X

@@ -1,12 +1,12 @@
 /* The pass chains: view rays go on from them to what is seen there. A chain has at most vit_scene.chain rays beyond the
- * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel part as
- * weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is simpler. What is
- * caught in glass or between panes leaves with the chain's last ray, straight on where it cannot be refracted. A chain that does not end on a matt surface
- * or in the sky is black. */
+ * first. At its first glass a chain splits: layer 0 of the pixel goes on refracted, layer 1 mirrored, each with its Fresnel
+ * part as weight. At later glass a chain takes the greater part with the whole weight: no light is lost, only its picture is
+ * simpler. What is caught in glass or between panes leaves with the chain's last ray, straight on where it cannot be refracted.
+ * A chain that does not end on a matt surface or in the sky is black. */
 #if VIT_WITH(CHAINS)
 /* Lanes whose triangle's material is a mirror or glass. */
-static inline li chain_goes_on(global const vit_attributes *attributes, global const vit_material *materials, li hit, li triangle)
-{
+static inline li chain_goes_on(global const vit_attributes *attributes, global const vit_material *materials, li hit,
+                               li triangle) {
     li r = L_I(0), own;
     while (l_any(hit)) {
         uint word = attributes[surface_next(&hit, triangle, &own)].material;
@@ -16,9 +16,8 @@ static inline li chain_goes_on(global const vit_attributes *attributes, global c
     return r;
 }
 
-kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance, global float *rays,
-                   volatile global uint *split, volatile global uint *reached WORK_PARAMETERS)
-{
+kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance,
+                   global float *rays, volatile global uint *split, volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -28,8 +27,10 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
     l_pixel(scene, first, &x, &y);
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
     lf t = L_LOAD(hit_distance + first), length = L_F(0);
-    lv3 o = lv3_load(camera->eye), d = l_camera_ray(scene, camera, round / layers, x, y), weight = lv3_set(L_F(1), L_F(1), L_F(1));
-    li going = chain_goes_on(attributes, materials, round_active(scene, first, x, y, active) & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
+    lv3 o = lv3_load(camera->eye), d = l_camera_ray(scene, camera, round / layers, x, y),
+        weight = lv3_set(L_F(1), L_F(1), L_F(1));
+    li going = chain_goes_on(attributes, materials,
+                             round_active(scene, first, x, y, active) & L_NE(triangle, L_I((int)VIT_NONE)), triangle);
     lf cone = L_F(camera_cone(scene, camera, round / layers));
     WORK_BEGIN
     for (uint i = 0; i < scene->chain && l_any(going); i++) {
@@ -46,7 +47,8 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
             shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
             li leaves = i + 1 == scene->chain ? inside | (glass & thin) : L_I(0), caught = leaves & L_GE(p.mirror, L_F(1));
-            li forks = glass & ~splits & ~caught & L_LT(p.mirror, L_F(1)), mirrored = glass & ~leaves & L_GT(p.mirror, L_F(0.5f));
+            li forks = glass & ~splits & ~caught & L_LT(p.mirror, L_F(1)),
+               mirrored = glass & ~leaves & L_GT(p.mirror, L_F(0.5f));
             mirrored = l_sel_i(forks, L_NE(layer, L_I(0)), mirrored);
             lf part = l_sel(forks, l_sel(mirrored, p.mirror, 1.0f - p.mirror), L_F(1));
             li through = glass & ~mirrored;

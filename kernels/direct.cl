@@ -1,9 +1,8 @@
-/* The passes direct_light and area_light: hard shadows of points and directions, soft ones of surfaces. METHODS.md, "Direct light" (8) and
- * METHODS.md, "Area lights" (10). */
+/* The passes direct_light and area_light: hard shadows of points and directions, soft ones of surfaces.
+ * METHODS.md, "Direct light" (8) and METHODS.md, "Area lights" (10). */
 
 /* Fraction of a light's intensity that goes into direction -l (l: unit, towards the light). glTF KHR_lights_punctual. */
-static inline lf light_cone(global const vit_light *light, lv3 l)
-{
+static inline lf light_cone(global const vit_light *light, lv3 l) {
     if (VIT_EFFECT_SPOT && light->kind == VIT_LIGHT_SPOT) {
         lf cosine = -lv3_dot(l, lv3_load(light->direction));
         lf a = l_min(l_max(fma(cosine, L_F(light->spot_scale), L_F(light->spot_offset)), L_F(0)), L_F(1));
@@ -13,8 +12,7 @@ static inline lf light_cone(global const vit_light *light, lv3 l)
 }
 
 /* Irradiance on a surface facing the light, a unit of intensity, at squared distance d2: 1/m2. */
-static inline lf light_falloff(global const vit_light *light, lf d2)
-{
+static inline lf light_falloff(global const vit_light *light, lf d2) {
     if (!VIT_EFFECT_RANGE)
         return l_div(1.0f, d2);
     lf q = d2 * light->inv_range2;
@@ -24,8 +22,7 @@ static inline lf light_falloff(global const vit_light *light, lf d2)
 }
 
 /* The same times d2: what a range leaves of a photon's power. Exactly 1 without a range. */
-static inline lf light_left(global const vit_light *light, lf d2)
-{
+static inline lf light_left(global const vit_light *light, lf d2) {
     lf q = d2 * light->inv_range2;
     if (light->falloff == VIT_FALLOFF_WINDOW)
         return l_max(1.0f - q, L_F(0)) * d2;
@@ -35,15 +32,14 @@ static inline lf light_left(global const vit_light *light, lf d2)
 /* View samples as lights see them. */
 typedef struct lit_sample {
     li hit;
-    lv3 p, n, v;             /* position; unit normal, unit direction to where it is seen from (with gloss) */
-    lv3 face;                /* normal of the triangle on the seen side, of any length (with smooth normals) */
-    lf exponent;             /* of the lobe */
-    lv3 matt, glossy;        /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
+    lv3 p, n, v;      /* position; unit normal, unit direction to where it is seen from (with gloss) */
+    lv3 face;         /* normal of the triangle on the seen side, of any length (with smooth normals) */
+    lf exponent;      /* of the lobe */
+    lv3 matt, glossy; /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
 } lit_sample;
 
 /* The samples' triangles' normals on the side that p is on. */
-static inline lv3 lit_face(global const vit_triangle *triangles, li hit, li triangle, lv3 p)
-{
+static inline lv3 lit_face(global const vit_triangle *triangles, li hit, li triangle, lv3 p) {
     lv3 face = lv3_set(L_F(0), L_F(0), L_F(0));
     li own;
     while (l_any(hit)) {
@@ -55,10 +51,9 @@ static inline lv3 lit_face(global const vit_triangle *triangles, li hit, li tria
     return face;
 }
 
-static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, global const vit_triangle *triangles, uint first, li hit,
-                                  global const uint *hit_triangle, global const float *position, global const uint *normal, global const float *rays,
-                                  global const uint *gloss)
-{
+static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, global const vit_triangle *triangles,
+                                  uint first, li hit, global const uint *hit_triangle, global const float *position,
+                                  global const uint *normal, global const float *rays, global const uint *gloss) {
     lit_sample s;
     uint n = scene->samples;
     s.hit = hit;
@@ -69,16 +64,16 @@ static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETER
         s.face = lit_face(triangles, hit, L_AS_INT(L_LOAD(hit_triangle + first)), s.p);
     s.exponent = L_F(1);
     if (VIT_EFFECT_GLOSS) {
-        s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1)) : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
+        s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1))
+                                : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
         s.exponent = L_AS_FLOAT(L_LOAD(gloss + n + first));
     }
     return s;
 }
 
-/* Cosine of the light from unit direction l. Light from behind the triangle does not come to this side of it, whatever the interpolated normal
- * says: its shadow ray would go by the triangle's edge. */
-static inline lf lit_cosine(const lit_sample *s, lv3 l)
-{
+/* Cosine of the light from unit direction l. Light from behind the triangle does not come to this side of it, whatever the
+ * interpolated normal says: its shadow ray would go by the triangle's edge. */
+static inline lf lit_cosine(const lit_sample *s, lv3 l) {
     lf cosine = l_max(lv3_dot(s->n, l), L_F(0));
     if (VIT_EFFECT_SMOOTH)
         cosine = l_sel(L_GT(lv3_dot(s->face, l), L_F(0)), cosine, L_F(0));
@@ -86,8 +81,7 @@ static inline lf lit_cosine(const lit_sample *s, lv3 l)
 }
 
 /* Adds light of power `intensity` from unit direction l: e, irradiance a unit of it. */
-static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity)
-{
+static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity) {
     lv3 light = lv3_set(intensity.x * e, intensity.y * e, intensity.z * e);
     s->matt = lv3_set(s->matt.x + light.x, s->matt.y + light.y, s->matt.z + light.z);
     if (VIT_EFFECT_GLOSS) {
@@ -97,8 +91,8 @@ static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity)
 }
 
 /* Adds the samples' reflected light to `direct`. */
-static inline void lit_store(global const vit_scene *scene, const lit_sample *s, uint first, global const uint *albedo, global const uint *gloss, global float *direct)
-{
+static inline void lit_store(global const vit_scene *scene, const lit_sample *s, uint first, global const uint *albedo,
+                             global const uint *gloss, global float *direct) {
     uint n = scene->samples;
     lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), out = lv3_load_planes(direct, n, first);
     out = lv3_set(fma(a.x, s->matt.x, out.x), fma(a.y, s->matt.y, out.y), fma(a.z, s->matt.z, out.z));
@@ -109,14 +103,14 @@ static inline void lit_store(global const vit_scene *scene, const lit_sample *s,
     lv3_store_planes(out, direct, n, first);
 }
 
-#define LIT_PARAMETERS                                                                                                           \
-    global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,         \
+#define LIT_PARAMETERS                                                                                                         \
+    global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,       \
         global const float *rays, global const uint *gloss, global float *direct
 #define LIT hit_triangle, position, normal, albedo, rays, gloss, direct
 
 /* Way to a light of a place: unit direction, distance, irradiance a unit of its power. *to: the way, not a direction's. */
-static inline lv3 lit_way(global const vit_scene *scene, global const vit_light *light, const lit_sample *s, lv3 *to, lf *d, lf *e)
-{
+static inline lv3 lit_way(global const vit_scene *scene, global const vit_light *light, const lit_sample *s, lv3 *to, lf *d,
+                          lf *e) {
     if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL) {
         lv3 along = lv3_scale(lv3_load(light->direction), L_F(-1));
         *d = L_F(3e38f);
@@ -134,8 +128,8 @@ static inline lv3 lit_way(global const vit_scene *scene, global const vit_light 
 }
 
 #if VIT_WITH(LIGHTS) && VIT_BUNDLE == 1
-kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights, LIT_PARAMETERS WORK_PARAMETERS)
-{
+kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights,
+                         LIT_PARAMETERS WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
         return;
@@ -163,8 +157,8 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
 }
 #elif VIT_WITH(LIGHTS)
 /* The same for a bundle. */
-kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights, LIT_PARAMETERS WORK_PARAMETERS)
-{
+kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights,
+                         LIT_PARAMETERS WORK_PARAMETERS) {
     uint bundle = (uint)get_global_id(0);
     if (bundle * 64 >= scene->samples)
         return;
@@ -226,10 +220,9 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
 #define NEAR_RAYS 64u    /* at least: a strip of light beside a lamp is found by few of them */
 #define NEAR_SHARE 0.01f /* of a white sky's light, that a point must not stand for alone */
 
-/* Lanes for which a point of any set would be much of all light: those whose irradiance from a white sky of the lamp's radiance it is more than
- * NEAR_SHARE of. The same for all sets, so that which of them a pixel has changes nothing but noise. */
-static inline li lit_near(global const vit_emitter *emitters, uint points, const lit_sample *s, float *far2)
-{
+/* Lanes for which a point of any set would be much of all light: those whose irradiance from a white sky of the lamp's radiance
+ * it is more than NEAR_SHARE of. The same for all sets, so that which of them a pixel has changes nothing but noise. */
+static inline li lit_near(global const vit_emitter *emitters, uint points, const lit_sample *s, float *far2) {
     li near = L_I(0);
     *far2 = 0;
     for (uint i = 0; i < VIT_PATTERNS * points; i++) {
@@ -245,18 +238,20 @@ static inline li lit_near(global const vit_emitter *emitters, uint points, const
     return near & s->hit;
 }
 
-/* Adds the light of surfaces nearer than vit_material.near2 to lanes of `near`, where points are too far apart: rays by the cosine find it.
- * `set`: the samples' sets. Points leave out just what is added here. */
-static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own, li near, float far2, lit_sample *s WORK_PASSED)
-{
+/* Adds the light of surfaces nearer than vit_material.near2 to lanes of `near`, where points are too far apart: rays by the
+ * cosine find it. `set`: the samples' sets. Points leave out just what is added here. */
+static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own, li near, float far2,
+                               lit_sample *s WORK_PASSED) {
     global const float *normals = (global const float *)triangles, *lights = (global const float *)materials;
-    const int triangle_words = (int)(sizeof(vit_triangle) / sizeof(float)), material_words = (int)(sizeof(vit_material) / sizeof(float)),
+    const int triangle_words = (int)(sizeof(vit_triangle) / sizeof(float)),
+              material_words = (int)(sizeof(vit_material) / sizeof(float)),
               words = (int)(sizeof(vit_attributes) / sizeof(uint));
     const uint rays = max(points, NEAR_RAYS);
     const float e = vit_div(VIT_PI, (float)rays), far = vit_sqrt(far2);
     for (uint i = 0; i < rays; i++) {
         lu number = L_AS_UINT(set * (int)rays) + L_U(i); /* a plane sequence (Roberts 2018) over all sets */
-        lv3 d = ray_cosine(s->n, l_unit_float(number * 0xc13fa9a9u + 0x80000000u), l_unit_float(number * 0x91e10da5u + 0x80000000u));
+        lv3 d = ray_cosine(s->n, l_unit_float(number * 0xc13fa9a9u + 0x80000000u),
+                           l_unit_float(number * 0x91e10da5u + 0x80000000u));
         ray_packet r = ray_make(s->p, d);
         lf t = L_F(far);
         li triangle = L_I((int)VIT_NONE);
@@ -269,7 +264,8 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own
         if (!l_any(lit))
             continue;
         li at = lit & triangle;
-        lv3 n = lv3_set(L_GATHER(lf, normals + 3, at * triangle_words), L_GATHER(lf, normals + 7, at * triangle_words), L_GATHER(lf, normals + 11, at * triangle_words));
+        lv3 n = lv3_set(L_GATHER(lf, normals + 3, at * triangle_words), L_GATHER(lf, normals + 7, at * triangle_words),
+                        L_GATHER(lf, normals + 11, at * triangle_words));
         lu word = l_gather_u((global const uint *)attributes + 3, at * words);
         lu dark = l_sel_u(L_GT(lv3_dot(n, d), L_F(0)), L_U(VIT_SIDE_DARK_BACK), L_U(VIT_SIDE_DARK_FRONT));
         li m = L_AS_INT(word & L_U(VIT_MATERIAL_INDEX)) * material_words;
@@ -280,15 +276,15 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own
 }
 #endif
 
-/* Adds the light of one of the fixed sets of points, which are directions with `sky`: each pixel of 4 x 4 takes another one of VIT_PATTERNS, and
- * each copy another again. own: the samples' triangles. */
-static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first, li own, uint copy,
-                                   lit_sample *s WORK_PASSED)
-{
+/* Adds the light of one of the fixed sets of points, which are directions with `sky`: each pixel of 4 x 4 takes another one of
+ * VIT_PATTERNS, and each copy another again. own: the samples' triangles. */
+static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first,
+                                   li own, uint copy, lit_sample *s WORK_PASSED) {
     global const float *p = (global const float *)emitters;
     const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
-    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride, near = L_I(0);
+    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride,
+       near = L_I(0);
 #if VIT_WITH(AREA_LIGHTS)
     if (!sky) {
         float far2;
@@ -303,8 +299,8 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
         if (sky)
             e = lit_cosine(s, l);
         else {
-            /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a sphere of it.
-             * The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
+            /* Nearer than the radius of the disc that the point stands for, it shines as from there: never more than half a
+             * sphere of it. The point lies off the surface, by ray_offset: the light itself does not stand in the way. */
             lv3 n = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
             to = lv3_sub(to, s->p);
             lf d2 = l_max(lv3_dot(to, to), L_F(least2));
@@ -326,8 +322,8 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
 }
 
 #if VIT_WITH(AREA_LIGHTS)
-kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, LIT_PARAMETERS WORK_PARAMETERS)
-{
+kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters,
+                       LIT_PARAMETERS WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
         return;
@@ -336,7 +332,8 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
         return;
     WORK_BEGIN
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
-    lit_by_emitters(RAY_SCENE, emitters, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)), round / layers, &s WORK_PASS);
+    lit_by_emitters(RAY_SCENE, emitters, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)), round / layers,
+                    &s WORK_PASS);
     lit_store(scene, &s, first, albedo, gloss, direct);
     WORK_END
 }

@@ -2,8 +2,8 @@
  * K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons that arrive from the front. METHODS.md, "Density estimate" (21).
  * vit_photon.power is Phi 2 / (pi r^2). */
 
-/* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the kernel's
- * disc that lies on surfaces in those zones. METHODS.md, "Light-leak partition" and METHODS.md, "Effective area". */
+/* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the
+ * kernel's disc that lies on surfaces in those zones. METHODS.md, "Light-leak partition" and METHODS.md, "Effective area". */
 #define ESTIMATE_BAKED global const uint *accept, global const float *inverse_area
 typedef struct estimate_sample {
     lv3 p, s;        /* position, unit normal */
@@ -11,8 +11,8 @@ typedef struct estimate_sample {
     lf inverse_area; /* with areas, else 1 */
 } estimate_sample;
 
-static inline estimate_sample estimate_load(global const vit_scene *scene, uint first, global const float *position, global const uint *normal, ESTIMATE_BAKED)
-{
+static inline estimate_sample estimate_load(global const vit_scene *scene, uint first, global const float *position,
+                                            global const uint *normal, ESTIMATE_BAKED) {
     estimate_sample r;
     r.p = sample_position(scene, position, first);
     r.s = l_decode_normal(L_LOAD(normal + first));
@@ -26,8 +26,8 @@ static inline estimate_sample estimate_load(global const vit_scene *scene, uint 
 }
 
 /* The samples of these numbers. */
-static inline estimate_sample estimate_load_at(global const vit_scene *scene, li at, global const float *position, global const uint *normal, ESTIMATE_BAKED)
-{
+static inline estimate_sample estimate_load_at(global const vit_scene *scene, li at, global const float *position,
+                                               global const uint *normal, ESTIMATE_BAKED) {
     estimate_sample r;
     r.p = sample_position_of(scene, position, at);
     r.s = l_decode_normal(l_gather_u(normal, at));
@@ -41,26 +41,24 @@ static inline estimate_sample estimate_load_at(global const vit_scene *scene, li
 }
 
 /* Does a photon count for a sample? Without zones, if it arrives from the front of the surface. */
-static inline li estimate_accepts(const estimate_sample *sample, global const vit_photon *photon)
-{
+static inline li estimate_accepts(const estimate_sample *sample, global const vit_photon *photon) {
     if (VIT_EFFECT_ZONES)
         return L_NE(sample->accept & (int)photon->zone, L_I(0));
     return L_LT(lv3_dot(sample->s, lv3_load(photon->direction)), L_F(0));
 }
 
-static inline lv3 estimate_normalise(const estimate_sample *sample, lv3 sum)
-{
+static inline lv3 estimate_normalise(const estimate_sample *sample, lv3 sum) {
     return VIT_EFFECT_AREA ? lv3_scale(sum, sample->inverse_area) : sum;
 }
 
-#define ESTIMATE_PARAMETERS                                                                                                      \
-    global const vit_scene *scene, uint max_nodes, global const uint *masks, global const uint *prefix, global const uint *list_first, \
-        global const uint *list_count, global const uint *list, global const vit_photon *photons
+#define ESTIMATE_PARAMETERS                                                                                                    \
+    global const vit_scene *scene, uint max_nodes, global const uint *masks, global const uint *prefix,                        \
+        global const uint *list_first, global const uint *list_count, global const uint *list,                                 \
+        global const vit_photon *photons
 #define ESTIMATE_ARGUMENTS scene, max_nodes, masks, prefix, list_first, list_count, list, photons
 
 /* Irradiance of the lanes' samples, W/m2; key: negative for none, 0 there. Lanes may have any keys. */
-static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
-{
+static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED) {
     li rest = L_GE(key, L_I(0));
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     while (l_any(rest)) {
@@ -92,8 +90,7 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sa
 
 #if VIT_WITH(LIST) && VIT_WITH_DENSE
 kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
-                          ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
-{
+                          ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
@@ -109,14 +106,14 @@ kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global c
 }
 #endif
 
-#define BUCKET_PARAMETERS                                                                                                        \
-    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
+#define BUCKET_PARAMETERS                                                                                                      \
+    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
         global const uint *prefix, global const int *bounds, global const float *buckets
 #define BUCKET_ARGUMENTS scene, cameras, frame, max_nodes, masks, prefix, bounds, buckets
 
-/* As published, without mixing: each sample takes its cluster's 54 directions, and blocks show. METHODS.md, "Buckets" (20). As estimate_gather. */
-static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED)
-{
+/* As published, without mixing: each sample takes its cluster's 54 directions, and blocks show. METHODS.md, "Buckets" (20). As
+ * estimate_gather. */
+static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sample *sample WORK_PASSED) {
     lv3 s = sample->s;
     li rest = L_GE(key, L_I(0));
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
@@ -134,7 +131,8 @@ static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sa
                 continue;
             WORK_LANES(evaluations, own);
             uint face = b / 9;
-            float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f, v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
+            float sign = (face & 1) ? -1.0f : 1.0f, u = (float)((int)(b % 3) - 1) * 0.666666667f,
+                  v = (float)((int)(b % 9 / 3) - 1) * 0.666666667f;
             float dx = face < 2 ? sign : u, dy = face < 2 ? u : face < 4 ? sign : v, dz = face < 4 ? v : sign;
             float unit = vit_div(1.0f, vit_sqrt(fma(dz, dz, fma(dy, dy, dx * dx))));
             lf w = 2.0f * l_max(lv3_dot(s, lv3_set(L_F(dx * unit), L_F(dy * unit), L_F(dz * unit))), L_F(0));
@@ -148,8 +146,7 @@ static inline lv3 bucket_gather_raw(BUCKET_PARAMETERS, li key, const estimate_sa
 /* Irradiance of a cluster on a surface of normal s, x, y, z in scalar planes. An octant counts as far as it lies in front:
  * clamp(1 + s o), o = (+-1, +-1, +-1). Exact for axis-parallel surfaces, continuous for all; a surface that is lit evenly and
  * tilted keeps at least 95 % of its light (blending axes by their squares, as ambient cubes do, would lose up to 21 %). */
-static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
-{
+static inline lv3 bucket_irradiance(global const float *octants, lv3 s) {
     lv3 r = lv3_set(L_F(0), L_F(0), L_F(0));
     for (uint o = 0; o < 8; o++) {
         lf front = ((o & 1) ? -s.x : s.x) + ((o & 2) ? -s.y : s.y) + ((o & 4) ? -s.z : s.z);
@@ -158,10 +155,10 @@ static inline lv3 bucket_irradiance(global const float *octants, lv3 s)
     return r;
 }
 
-/* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by how
- * near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y: pixels. */
-static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
-{
+/* Interpolated: the eight clusters round a sample (two tiles across, two down, two slices deep), weighted trilinearly and by
+ * how near their centres are to the sample's tangent plane. Own tile and slice are always among them. As estimate_gather; x, y:
+ * pixels. */
+static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED) {
     /* 1. Where the sample lies between the centres of tiles and slices. */
     lv3 p = sample->p, s = sample->s;
     li rest = L_GE(key, L_I(0));
@@ -199,16 +196,18 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
         lf weights = L_F(0);
         for (int corner = 0; corner < 8; corner++) {
             int cx = tx + (corner & 1), cy = ty + ((corner >> 1) & 1), cz = z + (corner >> 2);
-            if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y || cz >= (int)scene->slice_count)
+            if (cx < 0 || cy < 0 || cz < 0 || cx >= (int)scene->tiles_x || cy >= (int)scene->tiles_y ||
+                cz >= (int)scene->slice_count)
                 continue;
-            uint k = direction | key_spread(scene, 0, scene->key_bits_x, (uint)cx) | key_spread(scene, 1, scene->key_bits_y, (uint)cy) |
-                     key_spread(scene, 2, scene->key_bits_z, (uint)cz);
+            uint k = direction | key_spread(scene, 0, scene->key_bits_x, (uint)cx) |
+                     key_spread(scene, 1, scene->key_bits_y, (uint)cy) | key_spread(scene, 2, scene->key_bits_z, (uint)cz);
             uint cluster = cluster_if_any(scene, masks, prefix, k);
             if (cluster >= max_nodes)
                 continue;
             WORK_ADD(evaluations, popcount(l_bits(own)) * BUCKETS);
             splat_box box = splat_node(bounds, max_nodes, cluster);
-            lv3 c = lv3_set(L_F(0.5f * (box.lo[0] + box.hi[0])), L_F(0.5f * (box.lo[1] + box.hi[1])), L_F(0.5f * (box.lo[2] + box.hi[2])));
+            lv3 c = lv3_set(L_F(0.5f * (box.lo[0] + box.hi[0])), L_F(0.5f * (box.lo[1] + box.hi[1])),
+                            L_F(0.5f * (box.lo[2] + box.hi[2])));
             lf off = l_div(lv3_dot(lv3_sub(c, p), s), cell);
             lf w = l_max(1.0f - off * off, L_F(0.01f));
             w *= ((corner & 1) ? fx : 1.0f - fx) * (((corner >> 1) & 1) ? fy : 1.0f - fy) * ((corner >> 2) ? fz : 1.0f - fz);
@@ -222,17 +221,15 @@ static inline lv3 bucket_gather_smooth(BUCKET_PARAMETERS, li key, const estimate
     return total;
 }
 
-static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED)
-{
+static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample *sample, li x, li y WORK_PASSED) {
     if (VIT_EFFECT_RAW_BUCKETS)
         return bucket_gather_raw(BUCKET_ARGUMENTS, key, sample WORK_PASS);
     return bucket_gather_smooth(BUCKET_ARGUMENTS, key, sample, x, y WORK_PASS);
 }
 
 #if VIT_WITH(BUCKETS) && VIT_WITH_DENSE
-kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
-                             ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS)
-{
+kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position,
+                             global const uint *normal, ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;

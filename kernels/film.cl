@@ -1,13 +1,13 @@
-/* Rounds of a frame: which samples each takes, and the film that adds up what they see. Anti-aliasing takes further copies of the
- * view samples, at other places in their pixels, only where the first copy shows an edge: Whitted, CACM 23(6), 1980. Filters are where
- * the copies lie (vit_scene.offset): filter importance sampling, Ernst et al. 2006, so that no pixel writes to another. */
+/* Rounds of a frame: which samples each takes, and the film that adds up what they see. Anti-aliasing takes further copies of
+ * the view samples, at other places in their pixels, only where the first copy shows an edge: Whitted, CACM 23(6), 1980.
+ * Filters are where the copies lie (vit_scene.offset): filter importance sampling, Ernst et al. 2006, so that no pixel writes
+ * to another. */
 
 /* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
-static inline int view_light(vit_view view)
-{
+static inline int view_light(vit_view view) {
     switch (view) {
-#define X(name, light, meaning) \
-    case VIT_VIEW_##name: \
+#define X(name, light, meaning)                                                                                                \
+    case VIT_VIEW_##name:                                                                                                      \
         return light;
         VIT_VIEWS(X)
 #undef X
@@ -16,9 +16,8 @@ static inline int view_light(vit_view view)
 }
 
 /* What a pixel's sample sees, W/(m2 sr), by VIT_VIEW, before exposure. */
-static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo, global const float *direct, global const float *indirect,
-                                  global const uint *gloss, global const float *rays)
-{
+static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo, global const float *direct,
+                                  global const float *indirect, global const uint *gloss, global const float *rays) {
     lv3 c = lv3_set(L_F(0), L_F(0), L_F(0));
     int light = view_light((vit_view)VIT_VIEW);
     if (light & VIT_SHOWS_DIRECT)
@@ -38,9 +37,10 @@ static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo,
 }
 
 #if VIT_WITH(FILM)
-/* Samples of the round: all of the first copy, then those on edges; of the second layer, those whose chain split in the first. */
-kernel void activate(global const vit_scene *scene, uint round, uint layers, global const uint *edges, global uint *split, global uint *active)
-{
+/* Samples of the round: all of the first copy, then those on edges; of the second layer, those whose chain split in the first.
+ */
+kernel void activate(global const vit_scene *scene, uint round, uint layers, global const uint *edges, global uint *split,
+                     global uint *active) {
     uint block = (uint)get_global_id(0), bits = 0;
     if (block >= scene->samples / 16)
         return;
@@ -60,8 +60,8 @@ kernel void activate(global const vit_scene *scene, uint round, uint layers, glo
 
 /* Adds what the round's samples see to the film. */
 kernel void expose(global const vit_scene *scene, ROUND_PARAMETERS, global const uint *albedo, global const float *direct,
-                   global const float *indirect, global const uint *gloss, global const float *rays, global float *film, global uint *shown)
-{
+                   global const float *indirect, global const uint *gloss, global const float *rays, global float *film,
+                   global uint *shown) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -74,28 +74,27 @@ kernel void expose(global const vit_scene *scene, ROUND_PARAMETERS, global const
     lv3_store_planes(c, film, n, first);
     if (VIT_EFFECT_ANTIALIAS && round < layers) {
         lv3 display = lv3_scale(c, L_F(cameras[frame].exposure));
-        L_STORE(l_encode_albedo(lv3_set(l_min(display.x, L_F(1)), l_min(display.y, L_F(1)), l_min(display.z, L_F(1)))), shown + first);
+        L_STORE(l_encode_albedo(lv3_set(l_min(display.x, L_F(1)), l_min(display.y, L_F(1)), l_min(display.z, L_F(1)))),
+                shown + first);
     }
 }
 #endif
 
 #if VIT_WITH(ANTIALIAS)
-static inline li film_difference(lu a, lu b)
-{
+static inline li film_difference(lu a, lu b) {
     li x = L_AS_INT(a), y = L_AS_INT(b);
     return max(x, y) - min(x, y);
 }
 
 /* Greatest difference of a channel between two packed colours. */
-static inline li shown_difference(lu a, lu b)
-{
-    li r = film_difference(a & 1023u, b & 1023u), g = film_difference((a >> 10) & 1023u, (b >> 10) & 1023u), c = film_difference((a >> 20) & 1023u, (b >> 20) & 1023u);
+static inline li shown_difference(lu a, lu b) {
+    li r = film_difference(a & 1023u, b & 1023u), g = film_difference((a >> 10) & 1023u, (b >> 10) & 1023u),
+       c = film_difference((a >> 20) & 1023u, (b >> 20) & 1023u);
     return max(max(r, g), c);
 }
 
 /* Pixels that differ from one of their four neighbours: a bit a sample. */
-kernel void find_edges(global const vit_scene *scene, global const uint *shown, global uint *edges)
-{
+kernel void find_edges(global const vit_scene *scene, global const uint *shown, global uint *edges) {
     uint block = (uint)get_global_id(0), bits = 0;
     if (block >= scene->samples / 16)
         return;

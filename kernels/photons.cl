@@ -1,13 +1,13 @@
-/* The pass photon_paths, of moving lights. METHODS.md, "Photon paths". A photon is stored at every hit but the first, which is direct light.
- * Slot of path p's k-th stored photon: k * paths + p, so that no order of execution shows. */
+/* The pass photon_paths, of moving lights. METHODS.md, "Photon paths". A photon is stored at every hit but the first, which is
+ * direct light. Slot of path p's k-th stored photon: k * paths + p, so that no order of execution shows. */
 
 /* Footprint of a photon for the choice of mip level: wide, since its light spreads over its radius anyway. */
 #define PHOTON_CONE 0.02f
 
 /* Emission: path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square of directions: exactly
- * uniform, stratified, and neighbouring lanes start alike. weight: the light's intensity in that direction over that on its axis. */
-static inline lv3 photon_emission(global const vit_light *light, lu path, lv3 *origin, lf *weight)
-{
+ * uniform, stratified, and neighbouring lanes start alike. weight: the light's intensity in that direction over that on its
+ * axis. */
+static inline lv3 photon_emission(global const vit_light *light, lu path, lv3 *origin, lf *weight) {
     uint count = light->path_count;
     lu i = path - light->path_first; /* < 2^20, so that i * 2^32 / count can be had in two exact steps */
     lu high = (i << 12) / count, rest = (i << 12) - high * count;
@@ -38,32 +38,31 @@ static inline lv3 photon_emission(global const vit_light *light, lu path, lv3 *o
 constant uint photon_alpha[6] = VIT_BOUNCE_ALPHA;
 
 /* Two numbers in [0, 1) for the reflection at a hit. */
-static inline void photon_numbers(lu path, uint hit_number, lf *u, lf *v)
-{
+static inline void photon_numbers(lu path, uint hit_number, lf *u, lf *v) {
     if (!VIT_EFFECT_SEQUENCE) {
         lu seed = l_pcg(path ^ l_pcg(L_U(hit_number * 2u + 1u)));
         *u = l_unit_float(seed);
         *v = l_unit_float(l_pcg(seed));
         return;
     }
-    /* The R sequence (Roberts 2018) in the six dimensions of three reflections together, in integers modulo 2^32; later hits start
-     * anew with other shifts. Paths are numbered along the Z-order curve of their emission, so any stretch of the sequence, which is
-     * as evenly spread as the whole, belongs to neighbouring directions. */
+    /* The R sequence (Roberts 2018) in the six dimensions of three reflections together, in integers modulo 2^32; later hits
+     * start anew with other shifts. Paths are numbered along the Z-order curve of their emission, so any stretch of the
+     * sequence, which is as evenly spread as the whole, belongs to neighbouring directions. */
     uint k = (hit_number % 3u) * 2u, shift = hit_number * 2u;
     *u = l_unit_float(path * photon_alpha[k] + l_pcg(L_U(shift + 1u)));
     *v = l_unit_float(path * photon_alpha[k + 1u] + l_pcg(L_U(shift + 2u)));
 }
 
 /* Of photons that land `way` metres from the surface that reflected them; facing: how that and this surface face each other. */
-static inline lf photon_radius(float radius, lf way, lf facing)
-{
+static inline lf photon_radius(float radius, lf way, lf facing) {
     lf near = l_div(way * VIT_PHOTON_NEAR, l_max(facing, L_F(1e-6f)));
     return l_min(L_F(radius), l_max(near, L_F(VIT_PHOTON_LEAST * radius)));
 }
 
-/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident; whole: the scene's radius. */
-static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, lf radius, float whole, lu zone)
-{
+/* Writes VIT_LANES photons from `slot` on; empty slots are zeros but for their radii. power: W, incident; whole: the scene's
+ * radius. */
+static inline void photon_store(global vit_photon *photons, uint slot, li valid, lv3 p, lv3 d, lv3 power, lf radius,
+                                float whole, lu zone) {
     float v[11 * VIT_LANES];
     uint zones[VIT_LANES];
     lf r2 = radius * radius, inv = l_div(1.0f, r2), spread = l_max(radius, L_F(VIT_PHOTON_CAP * whole)),
@@ -103,9 +102,9 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
 
 #if VIT_WITH(TRACED)
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
-kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides, global const uint *cells,
-                         global vit_photon *photons, volatile global uint *counters, volatile global uint *reached WORK_PARAMETERS)
-{
+kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides,
+                         global const uint *cells, global vit_photon *photons, volatile global uint *counters,
+                         volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
         return;
@@ -115,7 +114,8 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             break;
     lu path = L_U(first) + L_AS_UINT(L_INDEX); /* 1. The light's part of the paths, (13) */
     li alive = L_I(0);
-    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o, from = o; /* from: normal of the matt surface that the photon comes from; 0: of none */
+    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o,
+        from = o; /* from: normal of the matt surface that the photon comes from; 0: of none */
     if (light < lights + (size_t)(frame + 1) * scene->lights) {
         lf weight;
         d = photon_emission(light, path, &o, &weight);
@@ -163,7 +163,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             stored += popcount(l_bits(matt));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
-            continue; /* slots of dead paths are still written, as empty */
+            continue;                            /* slots of dead paths are still written, as empty */
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
             power = lv3_scale(power, light_left(light, t * t));
         lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;

@@ -1,22 +1,19 @@
-/* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (27): radiance = direct + albedo / pi * irradiance; exposure; transfer curve.
- * VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine_frame.h). */
+/* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (27): radiance = direct + albedo / pi * irradiance;
+ * exposure; transfer curve. VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine_frame.h). */
 
 /* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */
-static inline lf srgb_curve(lf x)
-{
+static inline lf srgb_curve(lf x) {
     lf c = l_min(l_max(x, L_F(0)), L_F(1));
     lf low = c * 12.92f;
     lf high = fma(l_exp2(l_log2(l_max(c, L_F(1e-4f))) * (1.0f / 2.4f)), L_F(1.055f), L_F(-0.055f));
     return l_sel(L_LE(c, L_F(0.0031308f)), low, high);
 }
 
-static inline li to_steps(lf x, float steps)
-{
+static inline li to_steps(lf x, float steps) {
     return L_TRUNC(fma(x, L_F(steps), L_F(0.5f)));
 }
 
-static inline void write_floats(const int *at, const int *in, lv3 c, global float *framebuffer)
-{
+static inline void write_floats(const int *at, const int *in, lv3 c, global float *framebuffer) {
     float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
     L_STORE(c.x, r);
     L_STORE(c.y, g);
@@ -26,8 +23,7 @@ static inline void write_floats(const int *at, const int *in, lv3 c, global floa
             vstore4(VIT_FLOAT4(r[i], g[i], b[i], 1.0f), (size_t)at[i], framebuffer);
 }
 
-static inline void write_half_words(const int *at, const int *in, lv3 c, global ushort *framebuffer)
-{
+static inline void write_half_words(const int *at, const int *in, lv3 c, global ushort *framebuffer) {
     int v[VIT_LANES];
     L_STORE((to_steps(c.x, 31.0f) << 11) | (to_steps(c.y, 63.0f) << 5) | to_steps(c.z, 31.0f), v);
     for (int i = 0; i < VIT_LANES; i++)
@@ -35,8 +31,7 @@ static inline void write_half_words(const int *at, const int *in, lv3 c, global 
             framebuffer[at[i]] = (ushort)v[i];
 }
 
-static inline void write_words(const int *at, const int *in, li inside, lv3 c, global uint *framebuffer)
-{
+static inline void write_words(const int *at, const int *in, li inside, lv3 c, global uint *framebuffer) {
     int v[VIT_LANES];
     L_STORE((to_steps(c.x, 255.0f) << 16) | (to_steps(c.y, 255.0f) << 8) | to_steps(c.z, 255.0f), v);
     if (VIT_LANES >= 4 && !l_any(~inside)) { /* lanes are rows of four pixels */
@@ -51,8 +46,7 @@ static inline void write_words(const int *at, const int *in, li inside, lv3 c, g
 }
 
 /* Writes display values 0..1 (or linear ones for RGBA32F) to the pixels' places. */
-static inline void write_pixels(uint pitch, li x, li y, li inside, lv3 c, global uchar *framebuffer)
-{
+static inline void write_pixels(uint pitch, li x, li y, li inside, lv3 c, global uchar *framebuffer) {
     int at[VIT_LANES], in[VIT_LANES];
     L_STORE(y * (int)pitch + x, at);
     L_STORE(inside, in);
@@ -70,8 +64,7 @@ static inline void write_pixels(uint pitch, li x, li y, li inside, lv3 c, global
 }
 
 /* Black, blue, green, yellow, red, white over 0..1. */
-static inline lv3 heat_colour(lf h)
-{
+static inline lv3 heat_colour(lf h) {
     lf x = l_min(l_max(h, L_F(0)), L_F(1)) * 5.0f;
     lf zero = L_F(0), one = L_F(1);
     lf r = l_min(l_max(x - 2.0f, zero), one);
@@ -81,18 +74,17 @@ static inline lv3 heat_colour(lf h)
 }
 
 /* A colour a cluster, shaded by the normal. */
-static inline lv3 cluster_colour(lu key, lu normal)
-{
+static inline lv3 cluster_colour(lu key, lu normal) {
     lu h = l_pcg(key);
     lf shade = L_FROM_INT(L_AS_INT(normal >> 8) & 0xff) * (0.3f / 255.0f) + 0.6f;
-    return lv3_scale(lv3_set(L_FROM_INT(L_AS_INT(h & 255u)), L_FROM_INT(L_AS_INT((h >> 8) & 255u)), L_FROM_INT(L_AS_INT((h >> 16) & 255u))),
-                     shade * (1.0f / 255.0f));
+    return lv3_scale(
+        lv3_set(L_FROM_INT(L_AS_INT(h & 255u)), L_FROM_INT(L_AS_INT((h >> 8) & 255u)), L_FROM_INT(L_AS_INT((h >> 16) & 255u))),
+        shade * (1.0f / 255.0f));
 }
 
 /* Photons of the lanes' clusters; white from 4095 on. */
-static inline lv3 cluster_heat(global const vit_scene *scene, lu key, uint max_nodes, global const uint *masks, global const uint *prefix,
-                               global const uint *list_count)
-{
+static inline lv3 cluster_heat(global const vit_scene *scene, lu key, uint max_nodes, global const uint *masks,
+                               global const uint *prefix, global const uint *list_count) {
     uint k[VIT_LANES];
     float count[VIT_LANES];
     L_STORE(key, k);
@@ -104,9 +96,8 @@ static inline lv3 cluster_heat(global const vit_scene *scene, lu key, uint max_n
 }
 
 /* The least and the greatest view depth of the scene's box, metres; in front of the camera, and not more than 2^7 apart. */
-static inline void box_depths(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh, float *near,
-                              float *far)
-{
+static inline void box_depths(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh,
+                              float *near, float *far) {
     *near = *far = 0;
     for (int k = 0; k < 3; k++) {
         float axis = camera->forward[k], lo = vit_min(bvh->lo0[k], bvh->lo1[k]), hi = vit_max(bvh->hi0[k], bvh->hi1[k]);
@@ -117,10 +108,10 @@ static inline void box_depths(global const vit_scene *scene, global const vit_ca
     *near = vit_min(vit_max(*near, vit_max(scene->slice_near, *far * 0x1p-7f)), *far * 0.5f);
 }
 
-/* View depth as brightness, in even steps of its logarithm: 1 for the nearest, 1/16 for the farthest, so that it is not taken for nothing.
- * The range is what the path sees, by the depth slices in use; without them, the scene's box. */
-static inline lf depth_shade(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh, lf depth)
-{
+/* View depth as brightness, in even steps of its logarithm: 1 for the nearest, 1/16 for the farthest, so that it is not taken
+ * for nothing. The range is what the path sees, by the depth slices in use; without them, the scene's box. */
+static inline lf depth_shade(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh,
+                             lf depth) {
     lf least = L_F(scene->slice_near), octaves = L_F(vit_div((float)scene->slice_count, scene->slice_scale)), skipped = L_F(0);
     if (VIT_EFFECT_PHOTONS)
         skipped = L_F(vit_div((float)scene->slice_first, scene->slice_scale));
@@ -135,8 +126,8 @@ static inline lf depth_shade(global const vit_scene *scene, global const vit_cam
 }
 
 /* The photons' colours over c, where there is a dot. */
-static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside, lv3 c, global const uint *dots, global const vit_photon *photons)
-{
+static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside, lv3 c, global const uint *dots,
+                            global const vit_photon *photons) {
     int px[VIT_LANES], py[VIT_LANES], in[VIT_LANES];
     float r[VIT_LANES], g[VIT_LANES], b[VIT_LANES];
     L_STORE(x, px);
@@ -159,11 +150,12 @@ static inline lv3 over_dots(global const vit_scene *scene, li x, li y, li inside
 }
 
 kernel void resolve(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const vit_bvh_node *bvh,
-                    global const uint *hit_triangle, global const float *hit_distance, global const uint *normal, global const uint *albedo, global const float *direct,
-                    uint max_nodes, global const float *indirect, global const uint *keys, global const uint *masks, global const uint *prefix,
-                    global const uint *list_count, global const uint *dots, global const vit_photon *photons, global const uint *gloss,
-                    global const float *rays, global const float *film, global const uint *edges, uint pitch, global uchar *framebuffer)
-{
+                    global const uint *hit_triangle, global const float *hit_distance, global const uint *normal,
+                    global const uint *albedo, global const float *direct, uint max_nodes, global const float *indirect,
+                    global const uint *keys, global const uint *masks, global const uint *prefix, global const uint *list_count,
+                    global const uint *dots, global const vit_photon *photons, global const uint *gloss,
+                    global const float *rays, global const float *film, global const uint *edges, uint pitch,
+                    global uchar *framebuffer) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
@@ -201,7 +193,8 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         break;
     case VIT_VIEW_normals: {
         lv3 s = l_decode_normal(L_LOAD(normal + first));
-        c = lv3_sel(hit, lv3_set(fma(s.x, L_F(0.5f), L_F(0.5f)), fma(s.y, L_F(0.5f), L_F(0.5f)), fma(s.z, L_F(0.5f), L_F(0.5f))), zero);
+        c = lv3_sel(
+            hit, lv3_set(fma(s.x, L_F(0.5f), L_F(0.5f)), fma(s.y, L_F(0.5f), L_F(0.5f)), fma(s.z, L_F(0.5f), L_F(0.5f))), zero);
         display = 1;
         break;
     }
@@ -227,17 +220,15 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
 }
 
 #if VIT_WITH(DOTS)
-kernel void dots_clear(global const vit_scene *scene, global uint *dots)
-{
+kernel void dots_clear(global const vit_scene *scene, global uint *dots) {
     uint i = (uint)get_global_id(0);
     if (i < scene->width * scene->height)
         dots[i] = 0;
 }
 
 /* The view `photons`: each visible photon as 2 x 2 pixels; where several fall on one, the greatest index shows. */
-kernel void photon_dots(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const vit_photon *photons,
-                        global const float *hit_distance, volatile global uint *dots)
-{
+kernel void photon_dots(global const vit_scene *scene, global const vit_camera *cameras, uint frame,
+                        global const vit_photon *photons, global const float *hit_distance, volatile global uint *dots) {
     uint i = (uint)get_global_id(0);
     if (i >= scene->photons || !(photons[i].radius2 > 0))
         return;
@@ -267,8 +258,7 @@ kernel void photon_dots(global const vit_scene *scene, global const vit_camera *
 
 #if VIT_WITH(PHOTONS)
 /* Puts a fault of the frame behind those before it; the oldest makes room. */
-static inline void note_fault(global uint *faults, uint frame, uint code, uint count)
-{
+static inline void note_fault(global uint *faults, uint frame, uint code, uint count) {
     uint noted = faults[0], at = 1 + 3 * (noted % VIT_FAULT_RING);
     if (count == 0)
         return;
@@ -279,17 +269,15 @@ static inline void note_fault(global uint *faults, uint frame, uint code, uint c
     faults[0] = noted + 1 != 0 ? noted + 1 : VIT_FAULT_RING * 2;
 }
 
-static inline uint account_sum(uint counter, uint a, uint b)
-{
+static inline uint account_sum(uint counter, uint a, uint b) {
     if (counter == VIT_COUNTER_slice_min)
         return min(a, b);
     return counter == VIT_COUNTER_dropped_samples || counter == VIT_COUNTER_dropped_entries ? add_sat(a, b) : max(a, b);
 }
 
-/* Last: adds the round's counters, which come first, to the frame's, which come third, and to those since vit_open, between them: sums
- * for what was dropped, extremes for the rest. Notes faults. */
-kernel void account(global uint *counters, uint frame, uint round, global uint *faults)
-{
+/* Last: adds the round's counters, which come first, to the frame's, which come third, and to those since vit_open, between
+ * them: sums for what was dropped, extremes for the rest. Notes faults. */
+kernel void account(global uint *counters, uint frame, uint round, global uint *faults) {
     for (uint i = (uint)get_local_id(0); i < VIT_COUNTER_COUNT; i += (uint)get_local_size(0)) {
         global uint *total = counters + VIT_COUNTER_COUNT + i, *whole = counters + 2 * VIT_COUNTER_COUNT + i;
         *total = i == VIT_COUNTER_slice_min ? max(*total, counters[i]) : account_sum(i, *total, counters[i]);

@@ -1,8 +1,7 @@
 /* The pass samples: view samples, what each pixel's ray found, or with mirrors and glass what it found in the end. */
 
 /* Radiance of the sky in direction d, W/(m2 sr). */
-static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_sky_texel *sky, lv3 d)
-{
+static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_sky_texel *sky, lv3 d) {
     if (!VIT_EFFECT_SKY_IMAGE)
         return lv3_load(scene->background);
     /* The octahedral square, -1..1, to texels; the gutter holds what lies beyond its edges. */
@@ -28,10 +27,10 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
 }
 
 kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
-                    global const float *rays, global const vit_sky_texel *sky, global const uint *sides, global const uint *cells,
-                    global float *position, global uint *normal, global uint *albedo, global float *direct, global uint *accept,
-                    global float *inverse_area, global uint *gloss, volatile global uint *reached WORK_PARAMETERS)
-{
+                    global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
+                    global const uint *cells, global float *position, global uint *normal, global uint *albedo,
+                    global float *direct, global uint *accept, global float *inverse_area, global uint *gloss,
+                    volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -77,7 +76,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         lv3 own = s.emission; /* 4. Its own light */
         if (VIT_EFFECT_AMBIENT) {
             lv3 all = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo;
-            own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y), fma(all.z, L_F(scene->ambient[2]), own.z));
+            own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y),
+                          fma(all.z, L_F(scene->ambient[2]), own.z));
         }
         light = lv3_sel(hit, own, light);
         if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) { /* 5. What is baked for its cell */
@@ -87,7 +87,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING)))) { /* else all this stands there already */
+    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)),
+                          L_I((int)VIT_SAMPLE_NOTHING)))) { /* else all this stands there already */
         lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
         sample_store_position(scene, zero, zero, L_I(0), position, first);
         L_STORE(L_U(0), normal + first);

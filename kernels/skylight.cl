@@ -1,16 +1,18 @@
-/* The passes sky_light and sky_filter. METHODS.md, "Sky light". Each pixel of 4 x 4 looks into another set of directions, all sets together are even, and whatever 4 x 4 pixels a window
- * shows, it holds each set once: a sample's irradiance is the mean over the window about it of those on the same surface, so that 16 times as
- * many directions count as are traced. Albedo comes after, so textures stay sharp. */
+/* The passes sky_light and sky_filter. METHODS.md, "Sky light". Each pixel of 4 x 4 looks into another set of directions, all
+ * sets together are even, and whatever 4 x 4 pixels a window shows, it holds each set once: a sample's irradiance is the mean
+ * over the window about it of those on the same surface, so that 16 times as many directions count as are traced. Albedo comes
+ * after, so textures stay sharp. */
 
 #if VIT_WITH(SKY_LIGHT)
-#define SKYLIGHT_BENT 16.0f /* weight lost with the square of a neighbour's height over the tangent plane, by its distance: none left from 1/4 */
-#define SKYLIGHT_FLAT 4.0f  /* ray_offsets of height that do not count: what rounding makes of a plane */
+#define SKYLIGHT_BENT                                                                                                          \
+    16.0f /* weight lost with the square of a neighbour's height over the tangent plane, by its distance: none left from 1/4   \
+           */
+#define SKYLIGHT_FLAT 4.0f /* ray_offsets of height that do not count: what rounding makes of a plane */
 
 /* Irradiance, and with gloss what the lobe reflects, into planes of `skylight`; -1 where there is no sample. */
-kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters, global const uint *hit_triangle,
-                      global const float *position, global const uint *normal, global const float *rays, global const uint *gloss,
-                      global float *skylight WORK_PARAMETERS)
-{
+kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters,
+                      global const uint *hit_triangle, global const float *position, global const uint *normal,
+                      global const float *rays, global const uint *gloss, global float *skylight WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -18,7 +20,8 @@ kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_e
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
     if (l_any(hit)) {
         WORK_BEGIN
-        lit_by_emitters(RAY_SCENE, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle, round / layers, &s WORK_PASS);
+        lit_by_emitters(RAY_SCENE, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle,
+                        round / layers, &s WORK_PASS);
         WORK_END
     }
     s.matt.x = l_sel(hit, s.matt.x, L_F(-1));
@@ -28,8 +31,7 @@ kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_e
 }
 
 /* Weights, 0..1, of samples at p of unit normal s in what those at `at` of normal `own` (packed: own_code) get. */
-static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, float flat)
-{
+static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, float flat) {
     lv3 to = lv3_sub(p, at);
     lf height = l_max(fabs(lv3_dot(to, own)) - flat, L_F(0)), d2 = l_max(lv3_dot(to, to), L_F(1e-30f));
     lf w = l_max(1.0f - l_div(height * height * SKYLIGHT_BENT, d2), L_F(0));
@@ -43,9 +45,9 @@ static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, f
     return w;
 }
 
-kernel void sky_filter(global const vit_scene *scene, global const float *position, global const uint *normal, global const uint *albedo,
-                       global const uint *gloss, global const float *skylight, global float *direct)
-{
+kernel void sky_filter(global const vit_scene *scene, global const float *position, global const uint *normal,
+                       global const uint *albedo, global const uint *gloss, global const float *skylight,
+                       global float *direct) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
@@ -67,9 +69,11 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
     for (int dy = 0; dy < 4; dy++)
         for (int dx = 0; dx < 4; dx++) {
             li there = l_sample_at(scene, min(x + dx, right), min(y + dy, bottom));
-            lv3 e = lv3_set(L_GATHER(lf, skylight, there), L_GATHER(lf, VIT_PLANE(skylight, 1, n), there), L_GATHER(lf, VIT_PLANE(skylight, 2, n), there));
+            lv3 e = lv3_set(L_GATHER(lf, skylight, there), L_GATHER(lf, VIT_PLANE(skylight, 1, n), there),
+                            L_GATHER(lf, VIT_PLANE(skylight, 2, n), there));
             lu its = l_gather_u(normal, there);
-            lf w = skylight_weight(s.p, s.n, code, sample_position_of(scene, position, there), its, scene->ray_offset * SKYLIGHT_FLAT);
+            lf w = skylight_weight(s.p, s.n, code, sample_position_of(scene, position, there), its,
+                                   scene->ray_offset * SKYLIGHT_FLAT);
             w = l_sel(L_GE(e.x, L_F(0)), w, L_F(0));
             weights += w;
             s.matt = lv3_along(s.matt, e, w);
@@ -77,7 +81,8 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
                 w = l_sel(L_EQ(L_AS_INT(its), L_AS_INT(code)), w, L_F(0));
                 lobe_weights += w;
                 global const float *lobe = skylight + 3 * (size_t)n;
-                e = lv3_set(L_GATHER(lf, lobe, there), L_GATHER(lf, VIT_PLANE(lobe, 1, n), there), L_GATHER(lf, VIT_PLANE(lobe, 2, n), there));
+                e = lv3_set(L_GATHER(lf, lobe, there), L_GATHER(lf, VIT_PLANE(lobe, 1, n), there),
+                            L_GATHER(lf, VIT_PLANE(lobe, 2, n), there));
                 s.glossy = lv3_along(s.glossy, e, w);
             }
         }

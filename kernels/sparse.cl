@@ -1,7 +1,8 @@
 /* The passes estimate_sparse, interpolate and estimate_rest: irradiance at fewer samples. METHODS.md, "Sparse samples". It is
- * estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other samples get it from the four coarse ones
- * around them, weighted bilinearly and by whether they lie on the same surface (and with zones, take the same photons): Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees
- * with is estimated after all. Albedo is applied later, so that textures stay sharp. */
+ * estimated at one sample of each 2 x 2 or 4 x 4 pixels, the coarse grid, and the other samples get it from the four coarse
+ * ones around them, weighted bilinearly and by whether they lie on the same surface (and with zones, take the same photons):
+ * Kopf et al., "Joint Bilateral Upsampling", SIGGRAPH 2007. A sample that no coarse one agrees with is estimated after all.
+ * Albedo is applied later, so that textures stay sharp. */
 
 #define SPARSE_ROW_BITS (VIT_EFFECT_SPARSE_16 ? 0 : 1)
 #define SPARSE_ROW (1 << SPARSE_ROW_BITS) /* coarse samples a row of a block of 4 x 4 pixels */
@@ -9,34 +10,35 @@
 #define SPARSE_STEP (4 >> SPARSE_ROW_BITS) /* pixels between coarse samples */
 #define SPARSE_LEAST 0.1f /* sum of weights below which a sample has no neighbours; 1: four of the same plane and normal */
 
-/* A coarse sample: its sum before estimate_normalise, which each sample does for itself; position; unit normal: 3 floats each. A
- * sum of -1: it has no key. A block's are side by side, the one of the least pixel first. */
+/* A coarse sample: its sum before estimate_normalise, which each sample does for itself; position; unit normal: 3 floats each.
+ * A sum of -1: it has no key. A block's are side by side, the one of the least pixel first. */
 #define SPARSE_FLOATS 9
 
-static inline uint sparse_count(global const vit_scene *scene)
-{
+static inline uint sparse_count(global const vit_scene *scene) {
     return scene->samples >> 4 << 2 * SPARSE_ROW_BITS;
 }
 
 /* View sample of coarse sample i. */
-static inline li sparse_sample(li i)
-{
+static inline li sparse_sample(li i) {
     li at = i & (SPARSE_BLOCK - 1);
-    return (i >> (2 * SPARSE_ROW_BITS)) * 16 + (at >> SPARSE_ROW_BITS) * (SPARSE_STEP * 4) + (at & (SPARSE_ROW - 1)) * SPARSE_STEP;
+    return (i >> (2 * SPARSE_ROW_BITS)) * 16 + (at >> SPARSE_ROW_BITS) * (SPARSE_STEP * 4) +
+           (at & (SPARSE_ROW - 1)) * SPARSE_STEP;
 }
 
-/* List or buckets, whichever there are; `slots` are coarse samples where `flags` is NULL, else the view samples flagged there. */
-#define SPARSE_PARAMETERS                                                                                                        \
-    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,       \
-        global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,        \
-        global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,        \
+/* List or buckets, whichever there are; `slots` are coarse samples where `flags` is NULL, else the view samples flagged there.
+ */
+#define SPARSE_PARAMETERS                                                                                                      \
+    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
+        global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,      \
+        global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,      \
         global const float *position, global const uint *normal, ESTIMATE_BAKED
-#define SPARSE_ARGUMENTS                                                                                                         \
-    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position, normal, accept, inverse_area
+#define SPARSE_ARGUMENTS                                                                                                       \
+    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position,   \
+        normal, accept, inverse_area
 
 /* Estimates the first `used` of the lanes' slots, which have this key, and stores them. */
-static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, global float *out, const int *slots, uint used, int key WORK_PASSED)
-{
+static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, global float *out, const int *slots, uint used,
+                                   int key WORK_PASSED) {
     uint n = scene->samples;
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
     estimate_sample found = estimate_load_at(scene, sample, position, normal, accept, inverse_area);
@@ -72,8 +74,7 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
 }
 
 /* Keys of the slots from `first` on; negative beyond `end` and where nothing is to be estimated. */
-static inline li sparse_keys(global const uint *keys, global const uint *flags, uint first, uint end)
-{
+static inline li sparse_keys(global const uint *keys, global const uint *flags, uint first, uint end) {
     li slot = (int)first + L_INDEX;
     if (flags) { /* end is a multiple of 16 */
         li flagged = (L_I((int)(flags[first / 16] >> (first & 15))) >> L_INDEX) & 1;
@@ -83,10 +84,10 @@ static inline li sparse_keys(global const uint *keys, global const uint *flags, 
     return l_sel_i(L_LT(slot, L_I((int)end)), key, L_I(-1));
 }
 
-/* All slots of a tile, those of one cluster together: lanes that share a list take it in one go. Which lanes go together changes
- * no bit. */
-static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, global float *out, uint tile, uint slots WORK_PASSED)
-{
+/* All slots of a tile, those of one cluster together: lanes that share a list take it in one go. Which lanes go together
+ * changes no bit. */
+static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, global float *out, uint tile,
+                               uint slots WORK_PASSED) {
     uint begin = tile * slots, end = begin + slots;
     for (int key = 0x7fffffff, next; key >= 0; key = next) { /* descending; the first round only looks for the greatest */
         int mine[2 * VIT_LANES];
@@ -115,9 +116,9 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
 
 #if VIT_WITH(SPARSE)
 /* The coarse samples: a work-item's are those of a tile, or with one lane, where nothing need go together, a single one. */
-kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMETERS)
-{
-    uint id = (uint)get_global_id(0), slots = scene->tile * scene->tile / (16u / SPARSE_BLOCK), count = VIT_LANES == 1 ? 1 : slots;
+kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMETERS) {
+    uint id = (uint)get_global_id(0), slots = scene->tile * scene->tile / (16u / SPARSE_BLOCK),
+         count = VIT_LANES == 1 ? 1 : slots;
     if (id >= sparse_count(scene) / count)
         return;
     for (uint i = id * count; i < (id + 1) * count; i++)
@@ -129,8 +130,7 @@ kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMET
 }
 
 /* The samples that `interpolate` flagged. */
-kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global float *indirect WORK_PARAMETERS)
-{
+kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global float *indirect WORK_PARAMETERS) {
     uint id = (uint)get_global_id(0), count = VIT_LANES == 1 ? 1 : scene->tile * scene->tile;
     if (id >= scene->samples / count)
         return;
@@ -141,11 +141,10 @@ kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global fl
 
 #endif
 
-/* How far a sample at q of normal t lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from their
- * tangent plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step metres there.
- * *off: the distance, m. */
-static inline lf sparse_agreement(lv3 q, lv3 t, lv3 p, lv3 s, lf per_step, lf *off)
-{
+/* How far a sample at q of normal t lies on the same surface as the lanes' samples at p of normal s, 0..1: 1 - (distance from
+ * their tangent plane / step)^2 times the 8th power of the normals' cosine. The step between coarse samples is 1 / per_step
+ * metres there. *off: the distance, m. */
+static inline lf sparse_agreement(lv3 q, lv3 t, lv3 p, lv3 s, lf per_step, lf *off) {
     *off = lv3_dot(lv3_sub(p, q), s);
     lf steps = *off * per_step, cosine = l_max(lv3_dot(s, t), L_F(0));
     cosine *= cosine;
@@ -153,47 +152,46 @@ static inline lf sparse_agreement(lv3 q, lv3 t, lv3 p, lv3 s, lf per_step, lf *o
     return l_max(fma(-steps, steps, L_F(1)), L_F(0)) * (cosine * cosine);
 }
 
-/* Light between a lamp and a surface close to it changes within their distance, which may be much less than a step: where a sample
- * agrees with one that is a lamp while it is none, or the other way round, but lies beside its plane, it is estimated after all. A
- * lamp in the very plane of its ceiling has no gap. */
+/* Light between a lamp and a surface close to it changes within their distance, which may be much less than a step: where a
+ * sample agrees with one that is a lamp while it is none, or the other way round, but lies beside its plane, it is estimated
+ * after all. A lamp in the very plane of its ceiling has no gap. */
 #define SPARSE_FLAT 4.0f /* ray_offsets off the plane that do not count: what rounding makes of it */
 
 /* Lanes of samples marked `mark` that lie across such a gap from a sample marked `other`. */
-static inline li sparse_gap(global const vit_scene *scene, li mark, li other, lf agreement, lf off)
-{
+static inline li sparse_gap(global const vit_scene *scene, li mark, li other, lf agreement, lf off) {
     float flat = vit_max(scene->ray_offset * SPARSE_FLAT, scene->grid_step * 2.0f);
     return L_NE(mark, other) & L_GT(agreement, L_F(0)) & L_GT(fabs(off), L_F(flat));
 }
 
 /* -1 where samples are lamps. */
-static inline li sparse_lamps(lu albedo)
-{
+static inline li sparse_lamps(lu albedo) {
     return L_NE(L_AS_INT(albedo & VIT_SAMPLE_LAMP), L_I(0)) & L_EQ(L_AS_INT(albedo & VIT_SAMPLE_DARK), L_I(0));
 }
 
 /* Number of the block x, y of the picture, or VIT_NONE beyond it. */
-static inline uint sparse_block(global const vit_scene *scene, uint x, uint y)
-{
-    uint shift = 29u - (uint)clz(scene->tile), across = scene->tiles_x << shift, down = scene->tiles_y << shift, inner = (1u << shift) - 1;
+static inline uint sparse_block(global const vit_scene *scene, uint x, uint y) {
+    uint shift = 29u - (uint)clz(scene->tile), across = scene->tiles_x << shift, down = scene->tiles_y << shift,
+         inner = (1u << shift) - 1;
     if (x >= across || y >= down)
         return VIT_NONE;
     return (((y >> shift) * scene->tiles_x + (x >> shift)) << (2 * shift)) + ((y & inner) << shift) + (x & inner);
 }
 
 #if VIT_WITH(SPARSE)
-/* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a key
- * and no light yet. */
+/* Every sample's irradiance from the coarse ones; a work-item has a block of 4 x 4. Bit k of flags[block]: its sample k has a
+ * key and no light yet. */
 kernel void interpolate(global const vit_scene *scene, global const vit_camera *cameras, uint frame, global const uint *keys,
                         global const float *position, global const uint *normal, global const uint *albedo, ESTIMATE_BAKED,
-                        global const float *coarse, global float *indirect, global uint *flags)
-{
+                        global const float *coarse, global float *indirect, global uint *flags) {
     uint block = (uint)get_global_id(0), n = scene->samples, flagged = 0;
     if (block >= n / 16)
         return;
     global const vit_camera *camera = cameras + frame;
-    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2], step = (float)SPARSE_STEP * vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
+    float rx = camera->right[0], ry = camera->right[1], rz = camera->right[2],
+          step = (float)SPARSE_STEP * vit_sqrt(fma(rz, rz, fma(ry, ry, rx * rx)));
     uint shift = 29u - (uint)clz(scene->tile), tile = block >> (2 * shift), in_tile = block & ((1u << (2 * shift)) - 1);
-    uint bx = ((tile % scene->tiles_x) << shift) + (in_tile & ((1u << shift) - 1)), by = ((tile / scene->tiles_x) << shift) + (in_tile >> shift);
+    uint bx = ((tile % scene->tiles_x) << shift) + (in_tile & ((1u << shift) - 1)),
+         by = ((tile / scene->tiles_x) << shift) + (in_tile >> shift);
     uint around[4];
     for (uint k = 0; k < 4; k++)
         around[k] = sparse_block(scene, bx + (k & 1), by + (k >> 1));
@@ -205,9 +203,11 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
-        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)), per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
+        lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)),
+           per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
         li lamp = -((L_I((int)lamps) >> pixel) & 1), apart = L_I(0);
-        lf weights = L_F(0), off, x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP), y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
+        lf weights = L_F(0), off, x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP),
+           y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
             for (uint cx = 0; cx <= SPARSE_ROW; cx++) {
                 uint from = around[cx / SPARSE_ROW + 2 * (cy / SPARSE_ROW)], k = cy % SPARSE_ROW * SPARSE_ROW + cx % SPARSE_ROW;
@@ -224,9 +224,11 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
                 sum = lv3_along(sum, lv3_load(c), w);
                 weights += w;
             }
-        if (VIT_EFFECT_AREA_LIGHTS && lamps != 0 && lamps != 0xffffu) { /* the block's first lamp, for those that it is none of */
+        if (VIT_EFFECT_AREA_LIGHTS && lamps != 0 &&
+            lamps != 0xffffu) { /* the block's first lamp, for those that it is none of */
             li first_lamp = L_I((int)(block * 16 + 31u - (uint)clz(lamps & (~lamps + 1u))));
-            lf w = sparse_agreement(sample_position_of(scene, position, first_lamp), l_decode_normal(l_gather_u(normal, first_lamp)), p, s, per_step, &off);
+            lf w = sparse_agreement(sample_position_of(scene, position, first_lamp),
+                                    l_decode_normal(l_gather_u(normal, first_lamp)), p, s, per_step, &off);
             apart |= sparse_gap(scene, lamp, L_I(-1), w, off);
         }
         li good = has & L_GE(weights, L_F(SPARSE_LEAST)) & ~apart;

@@ -1,6 +1,6 @@
-/* The passes splat_*: which photons reach which clusters. METHODS.md, "Splatting": a work-group owns a node and sorts its photons
- * into its children, level by level from the root, which holds all. Lists are in the photons' order by construction, so no
- * atomics, and sums over them are the same on every device. Tests of a batch of photons against a child run in lanes. */
+/* The passes splat_*: which photons reach which clusters. METHODS.md, "Splatting": a work-group owns a node and sorts its
+ * photons into its children, level by level from the root, which holds all. Lists are in the photons' order by construction, so
+ * no atomics, and sums over them are the same on every device. Tests of a batch of photons against a child run in lanes. */
 
 #define SPLAT_BATCH 256
 
@@ -13,8 +13,8 @@ typedef struct splat_batch {
 } splat_batch;
 
 /* Fills the batch with photons begin .. begin + SPLAT_BATCH - 1 of a list; what is beyond `count` is empty. */
-static inline void splat_load(local splat_batch *b, global const vit_photon *photons, global const uint *list, int all, uint begin, uint count)
-{
+static inline void splat_load(local splat_batch *b, global const vit_photon *photons, global const uint *list, int all,
+                              uint begin, uint count) {
     for (uint i = (uint)get_local_id(0); i < SPLAT_BATCH; i += (uint)get_local_size(0)) {
         int used = begin + i < count;
         uint id = used ? (all ? begin + i : list[begin + i]) : 0;
@@ -37,8 +37,7 @@ typedef struct splat_box {
     uint accept; /* with zones: those that count for any sample in it */
 } splat_box;
 
-static inline splat_box splat_node(global const int *bounds, uint max_nodes, uint node)
-{
+static inline splat_box splat_node(global const int *bounds, uint max_nodes, uint node) {
     splat_box r;
     for (int k = 0; k < 3; k++) {
         r.lo[k] = vit_from_ordered(VIT_PLANE(bounds, k, max_nodes)[node]);
@@ -52,16 +51,16 @@ static inline splat_box splat_node(global const int *bounds, uint max_nodes, uin
 
 #define SPLAT_LOAD(p) L_LOAD((local const float *)(p))
 
-/* A photon is left out of a node only if it counts for no sample in it, after all roundings: so estimates from lists do not depend on
- * how samples are clustered, to the bit. The box's distance rounds as a sample's does and is never greater; 1 / r^2 may be rounded
- * down, which lets a sample see a little beyond r; and the two sums of three products below 1 are off by less than 5e-7 together. */
+/* A photon is left out of a node only if it counts for no sample in it, after all roundings: so estimates from lists do not
+ * depend on how samples are clustered, to the bit. The box's distance rounds as a sample's does and is never greater; 1 / r^2
+ * may be rounded down, which lets a sample see a little beyond r; and the two sums of three products below 1 are off by less
+ * than 5e-7 together. */
 #define SPLAT_BEYOND 1.000001f
 #define SPLAT_BEHIND 1e-6f
 
 /* Photons i .. i + VIT_LANES - 1 of the batch whose sphere meets the box and which do not come from behind for every
  * normal in it (METHODS.md, "Splatting" (18)); or, with zones, which lie in a zone that counts for one of its samples. */
-static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box)
-{
+static inline li splat_touch(local const splat_batch *b, uint i, const splat_box *box) {
     lf x = SPLAT_LOAD(b->x + i), y = SPLAT_LOAD(b->y + i), z = SPLAT_LOAD(b->z + i);
     lf ox = x - l_max(L_F(box->lo[0]), l_min(x, L_F(box->hi[0]))), oy = y - l_max(L_F(box->lo[1]), l_min(y, L_F(box->hi[1]))),
        oz = z - l_max(L_F(box->lo[2]), l_min(z, L_F(box->hi[2])));
@@ -69,69 +68,72 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
     if (VIT_EFFECT_ZONES)
         return near & L_NE(L_AS_INT(L_LOAD((local const uint *)(b->zone + i)) & box->accept), L_I(0));
     lf dx = SPLAT_LOAD(b->dx + i), dy = SPLAT_LOAD(b->dy + i), dz = SPLAT_LOAD(b->dz + i);
-    lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) + l_min(dz * box->nlo[2], dz * box->nhi[2]);
+    lf least = l_min(dx * box->nlo[0], dx * box->nhi[0]) + l_min(dy * box->nlo[1], dy * box->nhi[1]) +
+               l_min(dz * box->nlo[2], dz * box->nhi[2]);
     return near & L_LT(least, L_F(SPLAT_BEHIND));
 }
 
 /* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is
- * long: there, `chunks` work-groups each own a stretch of it, and splat_place puts the stretches' entries in order; chunks is 1 for
- * the other levels. What stands between SPLAT_BEGIN and SPLAT_END runs for every batch of photons and every child of the work-item,
- * with batch, used (photons in it), begin (of the batch in the list), c (of the node's children), child and box in scope. */
-#define SPLAT_OWNER                                                                                                              \
-    local splat_batch batch;                                                                                                     \
-    WORK_BEGIN                                                                                                                   \
-    uint chunk = (uint)get_group_id(0) % chunks, node = level_begin(scene, prefix, level) + (uint)get_group_id(0) / chunks;      \
-    int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                               \
-    uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                  \
-    uint list_begin = exists && level > 0 ? list_first[node] : 0;                                                                \
-    uint list_size = !exists ? 0 : level > 0 ? list_count[node] : scene->photons;                                                \
-    uint stretch = (list_size + chunks - 1) / chunks, chunk_begin = min(chunk * stretch, list_size),                             \
+ * long: there, `chunks` work-groups each own a stretch of it, and splat_place puts the stretches' entries in order; chunks is 1
+ * for the other levels. What stands between SPLAT_BEGIN and SPLAT_END runs for every batch of photons and every child of the
+ * work-item, with batch, used (photons in it), begin (of the batch in the list), c (of the node's children), child and box in
+ * scope. */
+#define SPLAT_OWNER                                                                                                            \
+    local splat_batch batch;                                                                                                   \
+    WORK_BEGIN                                                                                                                 \
+    uint chunk = (uint)get_group_id(0) % chunks, node = level_begin(scene, prefix, level) + (uint)get_group_id(0) / chunks;    \
+    int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                             \
+    uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                \
+    uint list_begin = exists && level > 0 ? list_first[node] : 0;                                                              \
+    uint list_size = !exists ? 0 : level > 0 ? list_count[node] : scene->photons;                                              \
+    uint stretch = (list_size + chunks - 1) / chunks, chunk_begin = min(chunk * stretch, list_size),                           \
          chunk_end = min(chunk_begin + stretch, list_size);
 
-#define SPLAT_BEGIN                                                                                                              \
-    for (uint begin = chunk_begin; begin < chunk_end; begin += SPLAT_BATCH) {                                                    \
-        barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
-        splat_load(&batch, photons, list + list_begin, level == 0, begin, chunk_end);                                            \
-        barrier(CLK_LOCAL_MEM_FENCE);                                                                                            \
-        uint used = min(chunk_end - begin, (uint)SPLAT_BATCH);                                                                   \
-        for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {                                       \
-            uint child = child_first + c;                                                                                        \
-            splat_box box = splat_node(bounds, max_nodes, child);                                                                \
+#define SPLAT_BEGIN                                                                                                            \
+    for (uint begin = chunk_begin; begin < chunk_end; begin += SPLAT_BATCH) {                                                  \
+        barrier(CLK_LOCAL_MEM_FENCE);                                                                                          \
+        splat_load(&batch, photons, list + list_begin, level == 0, begin, chunk_end);                                          \
+        barrier(CLK_LOCAL_MEM_FENCE);                                                                                          \
+        uint used = min(chunk_end - begin, (uint)SPLAT_BATCH);                                                                 \
+        for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {                                     \
+            uint child = child_first + c;                                                                                      \
+            splat_box box = splat_node(bounds, max_nodes, child);                                                              \
             WORK_ADD(node_tests, used);
 
-#define SPLAT_END                                                                                                                \
-        }                                                                                                                        \
+#define SPLAT_END                                                                                                              \
+    }                                                                                                                          \
     }
 
 #define SPLAT_CHILDREN 32 /* of a node, at most: places a chunk has in chunk_count */
 
 #if VIT_WITH(PHOTONS)
-kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
-                        global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
-                        global const uint *list_first, global uint *list_count, global const uint *list, global uint *chunk_count,
-                        global const uint *counters WORK_PARAMETERS)
-{
+kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
+                        global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
+                        global const uint *node_count, global const int *bounds, global const uint *list_first,
+                        global uint *list_count, global const uint *list, global uint *chunk_count,
+                        global const uint *counters WORK_PARAMETERS) {
     SPLAT_OWNER
     global uint *counts = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : list_count + child_first;
     for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
         counts[c] = 0;
     SPLAT_BEGIN
-        uint sum = 0;
-        for (uint i = 0; i < used; i += VIT_LANES)
-            sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
-        counts[c] += sum;
-        WORK_ADD(pairs, level + 1 == scene->levels ? sum : 0);
+    uint sum = 0;
+    for (uint i = 0; i < used; i += VIT_LANES)
+        sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
+    counts[c] += sum;
+    WORK_ADD(pairs, level + 1 == scene->levels ? sum : 0);
     SPLAT_END
     WORK_END
 }
 
 /* Places the lists of the level's children one after another; what lies beyond max_list is dropped, the last entries first. One
  * work-group. Sums saturate: saturating addition is associative, so the stretches of the scan do not show. */
-kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_list, uint level, uint chunks, global const uint *prefix,
-                        global uint *list_first, global uint *list_count, global uint *chunk_count, volatile global uint *counters)
-{
+kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_list, uint level, uint chunks,
+                        global const uint *prefix, global uint *list_first, global uint *list_count, global uint *chunk_count,
+                        volatile global uint *counters) {
     local uint partial[256];
-    uint begin = level_begin(scene, prefix, level + 1), end = level_end(scene, prefix, (global const uint *)counters, level + 1, max_nodes);
+    uint begin = level_begin(scene, prefix, level + 1),
+         end = level_end(scene, prefix, (global const uint *)counters, level + 1, max_nodes);
     begin = min(begin, end);
     uint id = (uint)get_local_id(0), size = (uint)get_local_size(0), length = (end - begin + size - 1) / size;
     uint a = min(begin + id * length, end), b = min(a + length, end), sum = 0, start = counters[VIT_COUNTER_list], largest = 0;
@@ -173,52 +175,54 @@ kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_
     }
 }
 
-kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
-                        global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
-                        global const uint *list_first, global const uint *list_count, global uint *list, global uint *cursor,
-                        global uint *chunk_count, global const uint *counters WORK_PARAMETERS)
-{
+kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
+                        global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
+                        global const uint *node_count, global const int *bounds, global const uint *list_first,
+                        global const uint *list_count, global uint *list, global uint *cursor, global uint *chunk_count,
+                        global const uint *counters WORK_PARAMETERS) {
     SPLAT_OWNER
     global uint *cursors = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : cursor + child_first; /* written so far */
     for (uint c = (uint)get_local_id(0); c < children && level > 0; c += (uint)get_local_size(0))
         cursors[c] = 0;
     SPLAT_BEGIN
-        uint at = list_first[child] + cursors[c], end = list_first[child] + list_count[child];
-        for (uint i = 0; i < used; i += VIT_LANES) {
-            for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1, at++)
-                if (at < end)
-                    list[at] = batch.id[i + 31u - (uint)clz(hits & (~hits + 1u))];
-        }
-        cursors[c] = at - list_first[child];
+    uint at = list_first[child] + cursors[c], end = list_first[child] + list_count[child];
+    for (uint i = 0; i < used; i += VIT_LANES) {
+        for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1, at++)
+            if (at < end)
+                list[at] = batch.id[i + 31u - (uint)clz(hits & (~hits + 1u))];
+    }
+    cursors[c] = at - list_first[child];
     SPLAT_END
     WORK_END
 }
 
 #endif
 
-/* Buckets of a cluster: raw, directions on a cube, 6 faces x 3 x 3 (METHODS.md, "Buckets" (20)), else octants (19): whether a photon comes from
- * the front of an axis-parallel surface is exact. */
+/* Buckets of a cluster: raw, directions on a cube, 6 faces x 3 x 3 (METHODS.md, "Buckets" (20)), else octants (19): whether a
+ * photon comes from the front of an axis-parallel surface is exact. */
 #define BUCKETS (VIT_EFFECT_RAW_BUCKETS ? 54u : 8u)
 
-static inline uint bucket_of(float x, float y, float z)
-{
+static inline uint bucket_of(float x, float y, float z) {
     if (!VIT_EFFECT_RAW_BUCKETS)
         return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
     float ax = fabs(x), ay = fabs(y), az = fabs(z);
     int on_x = ax >= ay && ax >= az, on_y = !on_x && ay >= az;
-    float major = on_x ? x : on_y ? y : z, u = on_x ? y : x, v = on_x || on_y ? z : y, scale = vit_div(1.5f, vit_max(fabs(major), 1e-9f));
+    float major = on_x   ? x
+                  : on_y ? y
+                         : z,
+          u = on_x ? y : x, v = on_x || on_y ? z : y, scale = vit_div(1.5f, vit_max(fabs(major), 1e-9f));
     int iu = min((int)fma(u, scale, 1.5f), 2), iv = min((int)fma(v, scale, 1.5f), 2);
     return (uint)((on_x ? 0 : on_y ? 2 : 4) + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
 }
 
 #if VIT_WITH(BUCKETS)
-/* The clusters' level (chunks is 1): each photon's power goes, weighted by the kernel at the box's centre, into the bucket of the
- * direction that it comes from. */
-kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks, global const vit_photon *photons,
-                          global const uint *prefix, global const uint *node_first, global const uint *node_count, global const int *bounds,
-                          global const uint *list_first, global uint *list_count, global const uint *list, volatile global uint *counters,
-                          global float *buckets WORK_PARAMETERS)
-{
+/* The clusters' level (chunks is 1): each photon's power goes, weighted by the kernel at the box's centre, into the bucket of
+ * the direction that it comes from. */
+kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
+                          global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
+                          global const uint *node_count, global const int *bounds, global const uint *list_first,
+                          global uint *list_count, global const uint *list, volatile global uint *counters,
+                          global float *buckets WORK_PARAMETERS) {
     uint pairs = 0;
     SPLAT_OWNER
     for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {
@@ -227,34 +231,34 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
             vstore4(VIT_FLOAT4(0, 0, 0, 0), (child_first + c) * BUCKETS + i, buckets);
     }
     SPLAT_BEGIN
-        float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
-        uint sum = 0;
-        for (uint i = 0; i < used; i += VIT_LANES) {
-            uint hits = l_bits(splat_touch(&batch, i, &box));
-            if (hits == 0)
-                continue;
-            sum += (uint)popcount(hits);
-            lf ox = SPLAT_LOAD(batch.x + i) - cx, oy = SPLAT_LOAD(batch.y + i) - cy, oz = SPLAT_LOAD(batch.z + i) - cz;
-            lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
-            if (VIT_EFFECT_FLATTENED) {
-                float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
-                float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? vit_div(1.0f, vit_sqrt(m2)) : 0;
-                lf off = fma(oz, L_F(mz * unit), fma(oy, L_F(my * unit), ox * (mx * unit)));
-                d2 = fma(off * off, L_F(scene->flatten), d2);
-            }
-            hits &= l_bits(L_LT(d2, r2));
-            float weight[VIT_LANES];
-            L_STORE(1.0f - l_div(d2, r2), weight);
-            for (; hits != 0; hits &= hits - 1) {
-                uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
-                global const vit_photon *p = photons + batch.id[k];
-                uint at = child * BUCKETS + bucket_of(-batch.dx[k], -batch.dy[k], -batch.dz[k]);
-                vstore4(vload4(at, buckets) + VIT_FLOAT4(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
-            }
+    float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
+    uint sum = 0;
+    for (uint i = 0; i < used; i += VIT_LANES) {
+        uint hits = l_bits(splat_touch(&batch, i, &box));
+        if (hits == 0)
+            continue;
+        sum += (uint)popcount(hits);
+        lf ox = SPLAT_LOAD(batch.x + i) - cx, oy = SPLAT_LOAD(batch.y + i) - cy, oz = SPLAT_LOAD(batch.z + i) - cz;
+        lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
+        if (VIT_EFFECT_FLATTENED) {
+            float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
+            float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? vit_div(1.0f, vit_sqrt(m2)) : 0;
+            lf off = fma(oz, L_F(mz * unit), fma(oy, L_F(my * unit), ox * (mx * unit)));
+            d2 = fma(off * off, L_F(scene->flatten), d2);
         }
-        list_count[child] += sum;
-        pairs += sum;
-        WORK_ADD(pairs, sum);
+        hits &= l_bits(L_LT(d2, r2));
+        float weight[VIT_LANES];
+        L_STORE(1.0f - l_div(d2, r2), weight);
+        for (; hits != 0; hits &= hits - 1) {
+            uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
+            global const vit_photon *p = photons + batch.id[k];
+            uint at = child * BUCKETS + bucket_of(-batch.dx[k], -batch.dy[k], -batch.dz[k]);
+            vstore4(vload4(at, buckets) + VIT_FLOAT4(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
+        }
+    }
+    list_count[child] += sum;
+    pairs += sum;
+    WORK_ADD(pairs, sum);
     SPLAT_END
     WORK_END
     if (pairs > 0)

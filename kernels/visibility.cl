@@ -1,7 +1,7 @@
 /* The pass visibility: the nearest triangle along each pixel's ray. */
 #if VIT_BUNDLE == 1
-kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance WORK_PARAMETERS)
-{
+kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle,
+                       global float *hit_distance WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
         return;
@@ -27,10 +27,12 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
     WORK_END
 }
 #else
-/* Bounds of the bundle's directions along one axis; 0: they have both signs, or nearly. *least2: the least square of them, added up. */
-static inline int view_axis(global const vit_camera *camera, int k, float x, float y, float reach, float largest, bundle_axis *axis, float *least2)
-{
-    float right = camera->right[k], down = camera->down[k], middle = fma(y + 4.0f, down, fma(x + 4.0f, right, camera->corner[k]));
+/* Bounds of the bundle's directions along one axis; 0: they have both signs, or nearly. *least2: the least square of them,
+ * added up. */
+static inline int view_axis(global const vit_camera *camera, int k, float x, float y, float reach, float largest,
+                            bundle_axis *axis, float *least2) {
+    float right = camera->right[k], down = camera->down[k],
+          middle = fma(y + 4.0f, down, fma(x + 4.0f, right, camera->corner[k]));
     float size = vit_max(right, -right) + vit_max(down, -down), corner = vit_max(camera->corner[k], -camera->corner[k]);
     float half_width = fma(size, 3.5f, BUNDLE_SLACK * fma(size, reach, corner)), eye = camera->eye[k];
     float lo = middle - half_width, hi = middle + half_width, least = vit_max(lo, -hi);
@@ -42,8 +44,7 @@ static inline int view_axis(global const vit_camera *camera, int k, float x, flo
 }
 
 /* The rays of packet i. */
-static inline ray_packet view_rays(global const vit_scene *scene, ROUND_PARAMETERS, uint bundle, uint i, li *inside)
-{
+static inline ray_packet view_rays(global const vit_scene *scene, ROUND_PARAMETERS, uint bundle, uint i, li *inside) {
     li x, y;
     uint first = bundle_sample(scene, bundle, i);
     l_pixel(scene, first, &x, &y);
@@ -51,8 +52,8 @@ static inline ray_packet view_rays(global const vit_scene *scene, ROUND_PARAMETE
     return ray_make(lv3_load((cameras + frame)->eye), l_camera_ray(scene, cameras + frame, round / layers, x, y));
 }
 
-kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance WORK_PARAMETERS)
-{
+kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle,
+                       global float *hit_distance WORK_PARAMETERS) {
     uint bundle = (uint)get_global_id(0), px, py;
     if (bundle * 64 >= scene->samples)
         return;
@@ -73,7 +74,8 @@ kernel void visibility(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_
     if (rays > 0) {
         WORK_ADD(view_rays, rays);
         /* 2. Bounds of their directions: they hold where no axis has both signs. */
-        float ox = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][0] : 0.0f, oy = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][1] : 0.0f;
+        float ox = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][0] : 0.0f,
+              oy = VIT_EFFECT_ANTIALIAS ? scene->offset[round / layers][1] : 0.0f;
         bundle_bounds bounds;
         float reach = (float)(scene->width + scene->height), largest = bundle_largest(nodes), least2 = 0;
         int one_octant = view_axis(camera, 0, (float)px + ox, (float)py + oy, reach, largest, &bounds.x, &least2) &&

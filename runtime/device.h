@@ -1,5 +1,6 @@
-/* The seam between the library and what runs the frame's passes: device_opencl.c and device_host.c give a vit_device each, and nothing
- * else knows which it has. All of a device's state, and the buffers that are the host's memory, lie in the caller's arena. */
+/* The seam between the library and what runs the frame's passes: device_opencl.c and device_host.c give a vit_device each, and
+ * nothing else knows which it has. All of a device's state, and the buffers that are the host's memory, lie in the caller's
+ * arena. */
 #ifndef VIT_DEVICE_H
 #define VIT_DEVICE_H
 
@@ -18,19 +19,22 @@ typedef struct vit_device_setup {
     const vit_open_info *info; /* device, threads, host_isa, wide_divide, profile, framebuffer */
     const vit_pack *pack;      /* in the machine's byte order */
     const vit_limits *limits;
-    void *state, *memory;      /* in the arena, 64-byte aligned, state zeroed: state_bytes, memory_bytes() */
+    void *state, *memory; /* in the arena, 64-byte aligned, state zeroed: state_bytes, memory_bytes() */
 } vit_device_setup;
 
 typedef struct vit_device {
     size_t state_bytes;
-    /* Bytes of buffers that the arena must hold; in_place: the caller's framebuffer is used. SIZE_MAX: more than there can be. */
+    /* Bytes of buffers that the arena must hold; in_place: the caller's framebuffer is used. SIZE_MAX: more than there can be.
+     */
     size_t (*memory_bytes)(const vit_scene *s, const vit_limits *l, int in_place);
-    /* Sets what in `l` is 0: lanes and group sizes that suit the device. Changes no bit of any frame. VIT_FAILED: no such device. */
+    /* Sets what in `l` is 0: lanes and group sizes that suit the device. Changes no bit of any frame. VIT_FAILED: no such
+     * device. */
     vit_status (*suit)(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why);
     /* After an error close() is still to be called. All buffers begin as zeros or with the pack's data. */
     vit_status (*open)(const vit_device_setup *setup, vit_text *why);
     void (*close)(void *state);
-    /* Buffers as open() left them. NULL: nothing of a device's work is left to its first frame, so that it needs no frame before. */
+    /* Buffers as open() left them. NULL: nothing of a device's work is left to its first frame, so that it needs no frame
+     * before. */
     vit_status (*rewind)(void *state, vit_text *why);
     /* Puts one run of a pass behind those before it. */
     vit_status (*run)(void *state, const vit_step *step, vit_text *why);

@@ -73,7 +73,8 @@ static vit_status find(uint32_t index, cl_device_id *id, vit_text *why) {
     }
     const size_t n = strlen(without);
     if (pocl)
-        snprintf(without + n, sizeof without - n, " (it has none where it cannot make its cache: set POCL_CACHE_DIR to a folder with room)");
+        snprintf(without + n, sizeof without - n,
+                 " (it has none where it cannot make its cache: set POCL_CACHE_DIR to a folder with room)");
     if (seen > 1)
         return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only 0 to %u, and host%s", index, seen - 1, without);
     return vit_fail(why, VIT_FAILED, "OpenCL: there is no device %u, only %shost%s", index, seen > 0 ? "0 and " : "", without);
@@ -106,7 +107,8 @@ static uint32_t lesser(uint32_t a, uint32_t b) {
 }
 
 static vit_status refuse_group(const char *what, uint32_t asked, uint32_t most, vit_text *why) {
-    return vit_fail(why, VIT_USAGE, "group %u: %s takes at most %u work-items a work-group on this device (0: what suits)", asked, what, most);
+    return vit_fail(why, VIT_USAGE, "group %u: %s takes at most %u work-items a work-group on this device (0: what suits)",
+                    asked, what, most);
 }
 
 int vit_opencl_is(uint32_t index, int gpu) {
@@ -157,7 +159,9 @@ static int build_options(char *text, size_t size, const vit_limits *l, int wide_
     n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (int)(l->effects >> bit & 1));
     VIT_EFFECTS(X)
 #undef X
-#define X(macro) n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d", (l->effects & ON_##macro) != 0);
+#define X(macro)                                                                                                               \
+    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%d",                               \
+                  (l->effects & ON_##macro) != 0);
     VIT_MODES(X)
 #undef X
     return n < (int)size;
@@ -193,7 +197,8 @@ static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group
     cl_int e;
     if (!build_options(options, sizeof options, l, d->wide_divide))
         return failed(why, "build options are too long", CL_INVALID_BUILD_OPTIONS);
-    d->program = clCreateProgramWithSource(d->context, vit_kernel_source_count, (const char **)(uintptr_t)vit_kernel_sources, NULL, &e);
+    d->program =
+        clCreateProgramWithSource(d->context, vit_kernel_source_count, (const char **)(uintptr_t)vit_kernel_sources, NULL, &e);
     if (e != CL_SUCCESS)
         return failed(why, "clCreateProgramWithSource", e);
     e = clBuildProgram(d->program, 1, &d->id, options, NULL, NULL);
@@ -224,8 +229,8 @@ static vit_status clear(void *state, vit_buffer b, vit_text *why) {
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueFillBuffer", e);
 }
 
-/* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat, but for the
- * framebuffer: each frame writes all pixels, and what lies between the rows of the caller's is not ours. */
+/* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat, but
+ * for the framebuffer: each frame writes all pixels, and what lies between the rows of the caller's is not ours. */
 static vit_status make_buffer(vit_opencl *d, uint32_t b, void *framebuffer, vit_text *why) {
     uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
     vit_section section = vit_buffer_sections[b];
@@ -249,7 +254,8 @@ static vit_status upload_baked_photons(vit_opencl *d, vit_text *why) {
     size_t size = s->baked * sizeof(vit_photon), at = (s->photons - s->baked) * sizeof(vit_photon);
     if (s->baked == 0 || !d->buffers[B_photons])
         return VIT_OK;
-    cl_int e = clEnqueueWriteBuffer(d->queue, d->buffers[B_photons], CL_TRUE, at, size, d->pack->section[VIT_SECTION_PHOT], 0, NULL, NULL);
+    cl_int e = clEnqueueWriteBuffer(d->queue, d->buffers[B_photons], CL_TRUE, at, size, d->pack->section[VIT_SECTION_PHOT], 0,
+                                    NULL, NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueWriteBuffer", e);
 }
 
@@ -263,7 +269,11 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
             uint32_t a = vit_passes[p].args[i];
             if (a == B_work && !vit_buffer_called(a, l))
                 break;
-            uint32_t value = a == V_run ? l->run : a == V_layers ? l->layers : a == V_max_nodes ? l->max_nodes : a == V_max_list ? l->max_list : 0;
+            uint32_t value = a == V_run         ? l->run
+                             : a == V_layers    ? l->layers
+                             : a == V_max_nodes ? l->max_nodes
+                             : a == V_max_list  ? l->max_list
+                                                : 0;
             value = a == V_pass ? p : a == V_pitch ? l->pitch : value;
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
@@ -286,9 +296,12 @@ static vit_status check_arithmetic(vit_opencl *d, int ask_wide, vit_text *why) {
     if ((little == CL_TRUE) == (VIT_BIG_ENDIAN != 0))
         return vit_fail(why, VIT_FAILED, "OpenCL: the device's order of bytes is not this machine's");
     if ((config & needed) != needed)
-        return vit_fail(why, VIT_FAILED, "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
+        return vit_fail(why, VIT_FAILED,
+                        "OpenCL: the device's floats do not round as every frame's bits need it (subnormals, to nearest)");
     if (d->wide_divide && !doubles)
-        return vit_fail(why, VIT_FAILED, "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");
+        return vit_fail(
+            why, VIT_FAILED,
+            "OpenCL: the device does not divide floats as every frame's bits need it, and has no doubles to do it by");
     return VIT_OK;
 }
 
@@ -417,7 +430,8 @@ static cl_int show_in_place(vit_opencl *d, size_t bytes) {
 static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
     vit_opencl *d = state;
     const vit_scene *s = d->scene;
-    const size_t row = vit_row_bytes(s, d->limits), pitch = vit_pitch_bytes(d->limits), zero[3] = {0, 0, 0}, region[3] = {row, s->height, 1};
+    const size_t row = vit_row_bytes(s, d->limits), pitch = vit_pitch_bytes(d->limits), zero[3] = {0, 0, 0},
+                 region[3] = {row, s->height, 1};
     const size_t bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, d->limits);
     cl_int e;
     if (!framebuffer)
@@ -427,8 +441,8 @@ static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *
     else if (stride == row && pitch == row)
         e = clEnqueueReadBuffer(d->queue, d->buffers[B_framebuffer], CL_TRUE, 0, bytes, framebuffer, 0, NULL, NULL);
     else
-        e = clEnqueueReadBufferRect(d->queue, d->buffers[B_framebuffer], CL_TRUE, zero, zero, region, pitch, 0, stride, 0, framebuffer, 0, NULL,
-                                    NULL);
+        e = clEnqueueReadBufferRect(d->queue, d->buffers[B_framebuffer], CL_TRUE, zero, zero, region, pitch, 0, stride, 0,
+                                    framebuffer, 0, NULL, NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "reading the frame", e);
 }
 
@@ -455,4 +469,5 @@ static size_t memory_bytes(const vit_scene *s, const vit_limits *l, int in_place
     return 0;
 }
 
-const vit_device vit_device_opencl = {sizeof(vit_opencl), memory_bytes, suit, open_device, close_device, rewind_buffers, run, clear, read_buffer, show, times};
+const vit_device vit_device_opencl = {
+    sizeof(vit_opencl), memory_bytes, suit, open_device, close_device, rewind_buffers, run, clear, read_buffer, show, times};

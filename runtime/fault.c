@@ -1,4 +1,5 @@
-/* The fault log: a ring in the arena of what the host noticed, and one on the device (kernel `account`), read back only here. */
+/* The fault log: a ring in the arena of what the host noticed, and one on the device (kernel `account`), read back only here.
+ */
 #include "vit.h"
 #include <string.h>
 

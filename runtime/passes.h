@@ -8,28 +8,28 @@
 
 #define ON(macro) VIT_BIT(macro)
 /* Not effects of the pack: */
-#define ON_DOTS ((uint64_t)1 << 63)  /* the view `photons` */
-#define ON_WORK ((uint64_t)1 << 62)  /* vit_open_info.count_work */
-#define ON_DENSE ((uint64_t)1 << 61) /* indirect light is estimated at every sample */
-#define ON_FILM ((uint64_t)1 << 60)  /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
+#define ON_DOTS ((uint64_t)1 << 63)   /* the view `photons` */
+#define ON_WORK ((uint64_t)1 << 62)   /* vit_open_info.count_work */
+#define ON_DENSE ((uint64_t)1 << 61)  /* indirect light is estimated at every sample */
+#define ON_FILM ((uint64_t)1 << 60)   /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
 #define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
-#define ON_REACH ((uint64_t)1 << 58) /* vit_open_info.record_reach */
+#define ON_REACH ((uint64_t)1 << 58)  /* vit_open_info.record_reach */
 #define ALWAYS ((uint64_t)0)
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
 typedef struct vit_limits {
-    uint64_t effects;          /* the pack's, and ON_DOTS... */
-    uint32_t rounds;           /* times that the passes of a frame's view samples run: copies * layers */
-    uint32_t layers;           /* view samples of a ray: 2 where glass also mirrors, else 1 */
+    uint64_t effects; /* the pack's, and ON_DOTS... */
+    uint32_t rounds;  /* times that the passes of a frame's view samples run: copies * layers */
+    uint32_t layers;  /* view samples of a ray: 2 where glass also mirrors, else 1 */
     uint32_t max_nodes, max_list;
     vit_format format;
     vit_view view;
-    uint32_t pitch;            /* of the framebuffer: pixels from one row to the next, at least the width */
-    uint32_t lanes, group;     /* samples a work-item, work-items a work-group of flat passes */
-    uint32_t scan_group;       /* work-items of single-group passes */
-    uint32_t splat_group;      /* work-items a node in splat passes */
-    uint32_t run;              /* samples in a row a work-item of cluster passes; a multiple of 16 */
-    uint32_t chunks;           /* work-groups that share the root's list of photons */
+    uint32_t pitch;        /* of the framebuffer: pixels from one row to the next, at least the width */
+    uint32_t lanes, group; /* samples a work-item, work-items a work-group of flat passes */
+    uint32_t scan_group;   /* work-items of single-group passes */
+    uint32_t splat_group;  /* work-items a node in splat passes */
+    uint32_t run;          /* samples in a row a work-item of cluster passes; a multiple of 16 */
+    uint32_t chunks;       /* work-groups that share the root's list of photons */
 } vit_limits;
 
 #define VIT_CHUNKS 64u /* chunks of the root's list, at most */
@@ -41,59 +41,61 @@ typedef struct vit_limits {
 /* Bytes of a view sample's position. */
 #define VIT_POSITION(l) ((l)->effects & ON(SMALL_SAMPLES) ? 6u : 12u)
 
-/* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits l). */
-#define VIT_BUFFERS(X)                                                                                                           \
-    X(scene, ALWAYS, META, sizeof(vit_scene))                                                                                    \
-    X(cameras, ALWAYS, CAMS, s->frames * sizeof(vit_camera))                                                                     \
-    X(lights, ON(LIGHTS), LITE, (uint64_t)s->frames *s->lights * sizeof(vit_light))                                              \
-    X(triangles, ALWAYS, GEOM, s->triangles * sizeof(vit_triangle))                                                              \
-    X(attributes, ALWAYS, ATTR, s->triangles * sizeof(vit_attributes))                                                           \
-    X(bvh, ALWAYS, BVHN, s->nodes * sizeof(vit_bvh_node))                                                                        \
-    X(materials, ALWAYS, MATL, s->materials * sizeof(vit_material))                                                              \
-    X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                              \
-    X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                          \
-    X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                          \
-    X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                             \
-    X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                            \
-    X(emitters, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_emitter)) \
-    X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                                    \
-    X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
-    X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                      \
-    X(position, ALWAYS, NONE, (uint64_t)s->samples * VIT_POSITION(l))                                                                         \
-    X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
-    X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                            \
-    X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                           \
-    X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 8)                                                                          \
-    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(GLOSS) ? 24 : 12))                                   \
-    X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                          \
-    X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                               \
-    X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                                \
-    X(edges, ON(ANTIALIAS), NONE, s->samples / 16 * 4)                                                                           \
-    X(shown, ON(ANTIALIAS), NONE, (uint64_t)s->samples * 4)                                                                      \
-    X(film, ON_FILM, NONE, (uint64_t)s->samples * 12)                                                                            \
-    X(accept, ON(ZONES), NONE, (uint64_t)s->samples * 4)                                                                         \
-    X(inverse_area, ON(AREA), NONE, (uint64_t)s->samples * 4)                                                                    \
-    X(photons, ON(PHOTONS), NONE, (uint64_t)s->photons * sizeof(vit_photon))                                                     \
-    X(masks, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                     \
-    X(prefix, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                    \
-    X(keys, ON(PHOTONS), NONE, (uint64_t)s->samples * 4)                                                                         \
-    X(node_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
-    X(node_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
-    X(bounds, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * (l->effects & ON(ZONES) ? 52 : 48))                                                                    \
-    X(list_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
-    X(list_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                 \
-    X(cursor, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                     \
-    X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                        \
-    X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                        \
-    X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                                \
-    X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                           \
-    X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                              \
-    X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                    \
-    X(dots, ON_DOTS, NONE, (uint64_t)s->width *s->height * 4)                                                                    \
-    X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                         \
-    X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                            \
-    X(work, ON_WORK, NONE, VIT_MAX_PASSES * VIT_WORK_COUNT * 8)                                                                  \
-    X(reached, ON_REACH, NONE, (s->materials + (uint64_t)VIT_REACHED_MORE) * 4)                                                  \
+/* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits
+ * l). */
+#define VIT_BUFFERS(X)                                                                                                         \
+    X(scene, ALWAYS, META, sizeof(vit_scene))                                                                                  \
+    X(cameras, ALWAYS, CAMS, s->frames * sizeof(vit_camera))                                                                   \
+    X(lights, ON(LIGHTS), LITE, (uint64_t)s->frames * s->lights * sizeof(vit_light))                                           \
+    X(triangles, ALWAYS, GEOM, s->triangles * sizeof(vit_triangle))                                                            \
+    X(attributes, ALWAYS, ATTR, s->triangles * sizeof(vit_attributes))                                                         \
+    X(bvh, ALWAYS, BVHN, s->nodes * sizeof(vit_bvh_node))                                                                      \
+    X(materials, ALWAYS, MATL, s->materials * sizeof(vit_material))                                                            \
+    X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                            \
+    X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                        \
+    X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \
+    X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                           \
+    X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                          \
+    X(emitters, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                         \
+      VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_emitter))                                       \
+    X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \
+    X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                    \
+    X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                    \
+    X(position, ALWAYS, NONE, (uint64_t)s->samples *VIT_POSITION(l))                                                           \
+    X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
+    X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
+    X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
+    X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 8)                                                                        \
+    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(GLOSS) ? 24 : 12))                                 \
+    X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                        \
+    X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                             \
+    X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                              \
+    X(edges, ON(ANTIALIAS), NONE, s->samples / 16 * 4)                                                                         \
+    X(shown, ON(ANTIALIAS), NONE, (uint64_t)s->samples * 4)                                                                    \
+    X(film, ON_FILM, NONE, (uint64_t)s->samples * 12)                                                                          \
+    X(accept, ON(ZONES), NONE, (uint64_t)s->samples * 4)                                                                       \
+    X(inverse_area, ON(AREA), NONE, (uint64_t)s->samples * 4)                                                                  \
+    X(photons, ON(PHOTONS), NONE, (uint64_t)s->photons * sizeof(vit_photon))                                                   \
+    X(masks, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                   \
+    X(prefix, ON(PHOTONS), NONE, (uint64_t)s->mask_words * 4)                                                                  \
+    X(keys, ON(PHOTONS), NONE, (uint64_t)s->samples * 4)                                                                       \
+    X(node_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                               \
+    X(node_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                               \
+    X(bounds, ON(PHOTONS), NONE, (uint64_t)l->max_nodes *(l->effects & ON(ZONES) ? 52 : 48))                                   \
+    X(list_first, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                               \
+    X(list_count, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                               \
+    X(cursor, ON(PHOTONS), NONE, (uint64_t)l->max_nodes * 4)                                                                   \
+    X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                     \
+    X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                      \
+    X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                              \
+    X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                         \
+    X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                            \
+    X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                  \
+    X(dots, ON_DOTS, NONE, (uint64_t)s->width * s->height * 4)                                                                 \
+    X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                       \
+    X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                          \
+    X(work, ON_WORK, NONE, VIT_MAX_PASSES *VIT_WORK_COUNT * 8)                                                                 \
+    X(reached, ON_REACH, NONE, (s->materials + (uint64_t)VIT_REACHED_MORE) * 4)                                                \
     X(framebuffer, ALWAYS, NONE, (((uint64_t)s->height - 1) * l->pitch + s->width) * vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT
@@ -102,7 +104,7 @@ typedef enum vit_buffer {
 #define X(name, when, section, bytes) B_##name,
     VIT_BUFFERS(X)
 #undef X
-    B_COUNT,
+        B_COUNT,
     /* Arguments by value, in the same list of a pass's arguments. */
     V_frame = B_COUNT,
     V_round,
@@ -113,54 +115,54 @@ typedef enum vit_buffer {
     V_max_nodes,
     V_max_list,
     V_pitch,
-    V_pass,                    /* row of vit_passes */
+    V_pass, /* row of vit_passes */
     V_END
 } vit_buffer;
 
 /* Work-items of a pass. */
 typedef enum vit_extent {
-    PER_SAMPLE,                /* samples / lanes */
-    PER_BUNDLE,                /* samples / (lanes * VIT_BUNDLE_OF(lanes)) */
-    PER_COARSE,                /* with one lane coarse samples, else tiles */
-    PER_REST,                  /* with one lane samples, else tiles */
-    PER_BLOCK,                 /* samples / 16 */
-    PER_RUN,                   /* ceil(samples / run) */
-    PER_PATH,                  /* paths / lanes */
+    PER_SAMPLE, /* samples / lanes */
+    PER_BUNDLE, /* samples / (lanes * VIT_BUNDLE_OF(lanes)) */
+    PER_COARSE, /* with one lane coarse samples, else tiles */
+    PER_REST,   /* with one lane samples, else tiles */
+    PER_BLOCK,  /* samples / 16 */
+    PER_RUN,    /* ceil(samples / run) */
+    PER_PATH,   /* paths / lanes */
     PER_PHOTON,
     PER_MASK_WORD,
-    PER_LEVEL_NODE,            /* nodes of the level, at most */
+    PER_LEVEL_NODE, /* nodes of the level, at most */
     PER_PIXEL,
-    GROUP_PER_LEVEL_NODE,      /* a work-group of splat_group for each node of the level; the root has `chunks` */
-    ONE_GROUP,                 /* one work-group of scan_group */
+    GROUP_PER_LEVEL_NODE, /* a work-group of splat_group for each node of the level; the root has `chunks` */
+    ONE_GROUP,            /* one work-group of scan_group */
 } vit_extent;
 
 /* For which levels of the hierarchy a pass runs. Neighbouring rows that are not ONCE are repeated together, level by level. */
 typedef enum vit_repeat {
     ONCE,
-    UPWARD,                    /* last level to first */
-    LISTED,                    /* first to last; with buckets all but the last, whose photons go into buckets instead */
-    LAST,                      /* the last level only */
+    UPWARD, /* last level to first */
+    LISTED, /* first to last; with buckets all but the last, whose photons go into buckets instead */
+    LAST,   /* the last level only */
 } vit_repeat;
 
 /* In which rounds of a frame a pass runs. A round takes one view sample a pixel: copy round / layers, layer round % layers. */
 typedef enum vit_rounds {
     EACH,
-    FIRST,                     /* the first only */
-    SECOND_COPY,               /* the first of the second copy */
-    AT_END,                    /* the last only */
+    FIRST,       /* the first only */
+    SECOND_COPY, /* the first of the second copy */
+    AT_END,      /* the last only */
 } vit_rounds;
 
 #define VIT_MAX_ARGS 32
 
 typedef struct vit_pass {
-    const char *name;          /* also the kernel's */
-    uint64_t when;             /* all of these effects; ALWAYS */
+    const char *name; /* also the kernel's */
+    uint64_t when;    /* all of these effects; ALWAYS */
     vit_rounds rounds;
     vit_extent extent;
     vit_repeat repeat;
-    uint64_t writes;           /* bits of vit_buffer */
+    uint64_t writes;            /* bits of vit_buffer */
     uint8_t args[VIT_MAX_ARGS]; /* vit_buffer, up to V_END; a buffer that is not called for is passed as NULL, but
-                                * WORK at the end is no parameter of kernels that do not count */
+                                 * WORK at the end is no parameter of kernels that do not count */
 } vit_pass;
 
 extern const vit_pass vit_passes[];

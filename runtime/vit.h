@@ -15,12 +15,12 @@ struct vit {
     vit_pack pack;
     vit_limits limits;
     const vit_device *device;
-    void *state;               /* the device's */
+    void *state; /* the device's */
     int profile;
-    uint64_t frames;           /* rendered since vit_open */
+    uint64_t frames; /* rendered since vit_open */
     double pass_ms[VIT_MAX_PASSES];
     vit_host_fault faults[VIT_HOST_FAULTS]; /* a ring */
-    uint64_t noted;            /* faults put into it */
+    uint64_t noted;                         /* faults put into it */
 };
 
 /* frame.c: puts the passes of a frame behind one another; they may still run. */

@@ -2,7 +2,7 @@
 DEPS := make gcc g++ libc6-dev $(if $(filter 0,$(OPENCL)),,ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd) libassimp-dev libembree-dev libstb-dev \
         libconfig-dev libpng-dev libxxhash-dev libcmocka-dev gnuplot-nox
 FUZZ_DEPS := clang libclang-rt-dev
-LINT_DEPS := clang clang-tidy cppcheck
+LINT_DEPS := clang clang-format clang-tidy cppcheck
 COVERAGE_DEPS := gcovr
 deps: packages := $(DEPS)
 fuzz-deps: packages := $(FUZZ_DEPS)

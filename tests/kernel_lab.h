@@ -50,10 +50,10 @@ static inline cl_device_id lab_first_device(void) {
 /* The runtime's options for this width and effect set, the view `final` in XRGB8888. */
 static inline void lab_options(char *text, size_t size, unsigned lanes, vit_u64 effects) {
     int n = snprintf(text, size,
-                     "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0",
-                     lanes);
+                     "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0", lanes);
 #define X(bit, name, macro, why)                                                                                               \
-    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u", (unsigned)(effects >> bit & 1u));
+    n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u",                               \
+                  (unsigned)(effects >> bit & 1u));
     VIT_EFFECTS(X)
 #undef X
     /* Of the modes only what the effects themselves ask for. */

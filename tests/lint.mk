@@ -1,5 +1,6 @@
 # clang-tidy (.clang-tidy says which checks and why not others) and cppcheck over our sources; any finding is an error. A file at a time
-# has its stamp in build/lint, so that a second run looks at what has changed. stb is not ours. The kernels' divisions: tests/float_divisions.sh.
+# has its stamp in build/lint, so that a second run looks at what has changed. stb is not ours. Layout: tests/format.sh; the kernels' divisions:
+# tests/float_divisions.sh.
 LINTED := $(filter-out bake/stb_image.c,$(RUNTIME) $(PLAY) $(BAKE) $(COST) $(SCENES))
 LINT_FLAGS := $(filter -D% -I%,$(BASE)) -Ibake -Iruntime -I$(B) -DVIT_EMBREE=$(EMBREE)
 LINT_STAMPS := $(LINTED:%.c=build/lint/%.ok)
@@ -12,11 +13,13 @@ CPPCHECK := -D__BYTE_ORDER__=1234 -D__ORDER_BIG_ENDIAN__=4321 --enable=warning,p
             --suppress=duplicateAssignExpression --suppress=nullPointerOutOfResources:bake/import_texture.c \
             --suppress=nullPointerOutOfMemory:bake/zones.c --suppress=normalCheckLevelMaxBranches
 
-.PHONY: lint run-lint run-cppcheck run-float-divisions
+.PHONY: lint run-lint run-cppcheck run-float-divisions run-format
 lint: deps lint-deps
 	@$(MAKE) $(SIDE_BY_SIDE) run-lint
-run-lint: run-cppcheck run-float-divisions $(LINT_STAMPS)
+run-lint: run-format run-cppcheck run-float-divisions $(LINT_STAMPS)
 	@echo "lint: $(words $(LINTED)) files are clean"
+run-format:
+	@tests/format.sh --check
 run-cppcheck:
 	@cppcheck $(CPPCHECK) $(LINT_FLAGS) $(LINTED)
 run-float-divisions:

@@ -1,7 +1,7 @@
 /* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
- * light whose photons are baked and a moving point light whose photons are traced, a point a set on area lights and in the sky, which
- * is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Every float is
- * exact in binary, so the pack has the same bytes with every compiler. */
+ * light whose photons are baked and a moving point light whose photons are traced, a point a set on area lights and in the sky,
+ * which is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Every float is exact in binary, so the
+ * pack has the same bytes with every compiler. */
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
 
@@ -9,8 +9,16 @@
 
 #include <string.h>
 
-enum { FIXTURE_FRAMES = 2, FIXTURE_LIGHTS = 2, FIXTURE_TRIANGLES = 96, FIXTURE_TEXELS = 61, FIXTURE_BAKED = 4, FIXTURE_CELLS = 27, FIXTURE_SKY = 2,
-       FIXTURE_POINTS = 2 * VIT_PATTERNS };
+enum {
+    FIXTURE_FRAMES = 2,
+    FIXTURE_LIGHTS = 2,
+    FIXTURE_TRIANGLES = 96,
+    FIXTURE_TEXELS = 61,
+    FIXTURE_BAKED = 4,
+    FIXTURE_CELLS = 27,
+    FIXTURE_SKY = 2,
+    FIXTURE_POINTS = 2 * VIT_PATTERNS
+};
 
 typedef struct pack_fixture {
     vit_scene scene;
@@ -97,11 +105,11 @@ static inline void fixture_scene(vit_scene *s) {
                      .frames = FIXTURE_FRAMES,
                      .fps = 30,
                      .tile = 16,
-                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) |
-                                VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) |
-                                VIT_BIT(AREA) | VIT_BIT(SEQUENCE) | VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) |
-                                VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) |
-                                VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS),
+                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(PHOTONS) |
+                                VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) | VIT_BIT(AREA) | VIT_BIT(SEQUENCE) |
+                                VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) |
+                                VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) |
+                                VIT_BIT(ANTIALIAS),
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,

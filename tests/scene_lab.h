@@ -1,6 +1,6 @@
 /* A scene made by a test, baked and played by the real programs, its indirect light read back as linear floats. All files lie
- * in a folder of the test's own. Programs run as from a shell, so what is tested is what a user gets; on the device `host`, which has
- * the bits of all others (test_same_bits.c) and compiles nothing. */
+ * in a folder of the test's own. Programs run as from a shell, so what is tested is what a user gets; on the device `host`,
+ * which has the bits of all others (test_same_bits.c) and compiles nothing. */
 #ifndef VIT_TESTS_SCENE_LAB_H
 #define VIT_TESTS_SCENE_LAB_H
 

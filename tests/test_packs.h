@@ -31,27 +31,29 @@ static const char test_packs_materials[] = "newmtl floor\nKd 0.8 0.7 0.6\nmap_Kd
 #define BODY(x)                                                                                                                \
     "v " x ".4 0.3 0.6\nv " x ".0 0.3 0.6\nv " x ".2 0.6 0.6\nv " x ".2 0.02 0.6\nv " x ".2 0.3 0.9\nv " x ".2 0.3 0.3\n"
 #define FACES(name, a, b, c, d, e, f)                                                                                          \
-    "usemtl " name "\nf " a "//1 " c "//3 " e "//5\nf " c "//3 " b "//2 " e "//5\nf " b "//2 " d "//4 " e "//5\nf " d "//4 " a   \
-    "//1 " e "//5\nf " c "//3 " a "//1 " f "//6\nf " b "//2 " c "//3 " f "//6\nf " d "//4 " b "//2 " f "//6\nf " a "//1 " d     \
+    "usemtl " name "\nf " a "//1 " c "//3 " e "//5\nf " c "//3 " b "//2 " e "//5\nf " b "//2 " d "//4 " e "//5\nf " d "//4 " a \
+    "//1 " e "//5\nf " c "//3 " a "//1 " f "//6\nf " b "//2 " c "//3 " f "//6\nf " d "//4 " b "//2 " f "//6\nf " a "//1 " d    \
     "//4 " f "//6\n"
-static const char test_packs_bodies[] = "mtllib bodies.mtl\n" BODY("0") "v -0.1 0.3 0.6\nv -0.5 0.3 0.6\nv -0.3 0.6 0.6\nv -0.3 0.02 0.6\n"
-                                        "v -0.3 0.3 0.9\nv -0.3 0.3 0.3\n"
-                                        "vn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 0\nvn 0 0 1\nvn 0 0 -1\n" FACES(
-                                            "glass", "1", "2", "3", "4", "5", "6") FACES("chrome", "7", "8", "9", "10", "11", "12");
+static const char test_packs_bodies[] =
+    "mtllib bodies.mtl\n" BODY("0") "v -0.1 0.3 0.6\nv -0.5 0.3 0.6\nv -0.3 0.6 0.6\nv -0.3 0.02 0.6\n"
+                                    "v -0.3 0.3 0.9\nv -0.3 0.3 0.3\n"
+                                    "vn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 0\nvn 0 0 1\nvn 0 0 -1\n" FACES(
+                                        "glass", "1", "2", "3", "4", "5", "6") FACES("chrome", "7", "8", "9", "10", "11", "12");
 static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\nnewmtl chrome\nKd 0.5 0.5 0.5\n";
 
 /* All that a scene can call for. */
 #define SHINE_SCENE                                                                                                            \
-    "meshes = ( { file = \"room.obj\"; }, { file = \"bodies.obj\"; } );\nambient = [0.02, 0.03, 0.04];\n"                        \
+    "meshes = ( { file = \"room.obj\"; }, { file = \"bodies.obj\"; } );\nambient = [0.02, 0.03, 0.04];\n"                      \
     "background = [0.2, 0.3, 0.4];\nsky: { light = true; };\n"                                                                 \
     "materials = ( { name = \"lamp\"; area_light = true; },"                                                                   \
     " { name = \"floor\"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = \"chrome\"; kind = \"mirror\";"             \
     " specular = [0.9, 0.8, 0.7]; }, { name = \"glass\"; kind = \"glass\"; ior = 1.5; absorption = [0.5, 0.2, 0.1]; } );\n"    \
     "output: { width = 96; height = 64; frames = 2; };\n"                                                                      \
     "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
-    "lights = (" ROOM_STILL ", " ROOM_MOVING ", { type = \"directional\"; keys = ( { position = [0.3, 3.0, 2.0];"               \
+    "lights = (" ROOM_STILL ", " ROOM_MOVING ", { type = \"directional\"; keys = ( { position = [0.3, 3.0, 2.0];"              \
     " target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); });\n"                                                      \
-    "quality: { photons = 2000; radius = 0.4; tile = 16; indirect_samples = 4; antialias = 2; light_samples = 4; sky_samples = 4; };\n"
+    "quality: { photons = 2000; radius = 0.4; tile = 16; indirect_samples = 4; antialias = 2; "                                \
+    "light_samples = 4; sky_samples = 4; };\n"
 
 /* 8 x 8 texels of blue, green, red and alpha behind a TGA header: squares of 4 x 4 are opaque or holes in turn. */
 enum { HOLES_EDGE = 8, HOLES_HEADER = 18, HOLES_BYTES = HOLES_HEADER + 4 * HOLES_EDGE * HOLES_EDGE };
@@ -128,7 +130,8 @@ static const struct {
     {"zones-sparse-buckets", TEST_PACKS "/room.cfg", BAKED "--indirect-samples 4 --estimate buckets"},
     {"zones-alone", TEST_PACKS "/room.cfg", "--zones 1 --effective-area 0 --bounce-sequence 0 --indirect-samples 1"},
     {"areas-alone", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0 --indirect-samples 1"},
-    {"areas-buckets", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 1 --bounce-sequence 0 --indirect-samples 4 --estimate buckets"},
+    {"areas-buckets", TEST_PACKS "/room.cfg",
+     "--zones 0 --effective-area 1 --bounce-sequence 0 --indirect-samples 4 --estimate buckets"},
     {"sequence", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 0 --bounce-sequence 1 --indirect-samples 1"},
 #undef BAKED
     {"still", TEST_PACKS "/still.cfg", PLAIN},
@@ -193,8 +196,8 @@ static inline size_t test_packs_find(const char *name) {
     return 0;
 }
 
-/* The pack's path; baked if it is missing or older than the baker or a file that it is made from. By the device `host`, which compiles
- * nothing: OpenCL's is then held to its hashes. */
+/* The pack's path; baked if it is missing or older than the baker or a file that it is made from. By the device `host`, which
+ * compiles nothing: OpenCL's is then held to its hashes. */
 static inline const char *test_pack(const char *name) {
     static char path[256];
     struct stat pack;

@@ -37,7 +37,8 @@ vit_status adds_without(const pack_sections *whole, uint64_t effects, void **byt
     if (!(s.effects & (VIT_BIT(ZONES) | VIT_BIT(AREA))))
         s.cells = 0;
     if (s.area_samples == 0 && all->area_samples > 0) /* the sky's come after them */
-        sections.data[VIT_SECTION_EMIT] = (const vit_emitter *)whole->data[VIT_SECTION_EMIT] + (size_t)VIT_PATTERNS * all->area_samples;
+        sections.data[VIT_SECTION_EMIT] =
+            (const vit_emitter *)whole->data[VIT_SECTION_EMIT] + (size_t)VIT_PATTERNS * all->area_samples;
     if (!(s.effects & VIT_BIT(SKY_IMAGE)))
         s.sky_size = 0;
     sections.data[VIT_SECTION_META] = &s;
@@ -80,7 +81,8 @@ static vit_status measure(const void *pack, size_t size, unsigned threads, uint6
     return status;
 }
 
-static vit_status measure_without(const pipeline_packed *p, uint64_t effect, unsigned threads, const adds *whole, adds_of *out, vit_text *why) {
+static vit_status measure_without(const pipeline_packed *p, uint64_t effect, unsigned threads, const adds *whole, adds_of *out,
+                                  vit_text *why) {
     void *pack = NULL;
     size_t size;
     uint64_t bytes, work;

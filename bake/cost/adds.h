@@ -20,8 +20,9 @@ typedef struct adds {
 /* Effects that are measured: those of materials, sky and pixels (EFFECTS_NAMED), the lights together and the photons. */
 #define ADDS_MEASURED (EFFECTS_NAMED | VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS))
 
-/* The pack without these effects, and without what then has nothing to do: lights and photons if no source is left. The caller frees
- * *bytes. Bounds stay those of the whole pack, and so do baked photons, as long as there are any: what an effect did to them does not show. */
+/* The pack without these effects, and without what then has nothing to do: lights and photons if no source is left. The caller
+ * frees *bytes. Bounds stay those of the whole pack, and so do baked photons, as long as there are any: what an effect did to
+ * them does not show. */
 vit_status adds_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why);
 
 /* Measures on the device `host`, with exact counts: the same figures on every machine. */

@@ -46,8 +46,10 @@ static const option options[] = {
      "for packs, and for what is open at once (default: a quarter of the machine's)"},
     {"--threads", "N", WHOLE, AT(threads), 0, 1024, "of baker and reference (default 0: all cores); changes no bit"},
     {"--device", "NAME|N", WORD, AT(device), 0, 0,
-     "plays what is timed: an OpenCL device, as vitrine-play takes it, or host (default OpenCL's first, or host if there is none)"},
-    {"--strict", NULL, FLAG, AT(strict), 0, 0, "a missing texture, or a material of the scene file that no mesh has, is an error, not a warning"},
+     "plays what is timed: an OpenCL device, as vitrine-play takes it, or host (default OpenCL's first, "
+     "or host if there is none)"},
+    {"--strict", NULL, FLAG, AT(strict), 0, 0,
+     "a missing texture, or a material of the scene file that no mesh has, is an error, not a warning"},
     {"--quiet", NULL, FLAG, AT(quiet), 0, 0, "warnings and errors only"},
     {"--version", NULL, FLAG, AT(version), 0, 0, ""},
     {"--help", NULL, FLAG, AT(help), 0, 0, ""},

@@ -9,13 +9,13 @@ typedef struct cost_options {
     const char *input, *output, *knobs, *cache, *write;
     bool no_cache, strict, quiet, relmse, help, version;
     uint32_t settings, every, repeats, max_samples, threads, memory, converge; /* memory: MiB, 0: a quarter of the machine's */
-    const char *device; /* as vit_device_find() takes it; NULL: the default */
-    int64_t frame;                                                           /* < 0: the middle one */
-    int width, height;                                                       /* 0: as the scene says */
-    double shrink;                                                           /* of converge_plan */
-    double reference_error;                                                  /* 0: a tenth of the smallest error */
-    double fit;                                                              /* ms, 0: none */
-    double fit_work;                                                         /* work units, a whole number, 0: none */
+    const char *device;     /* as vit_device_find() takes it; NULL: the default */
+    int64_t frame;          /* < 0: the middle one */
+    int width, height;      /* 0: as the scene says */
+    double shrink;          /* of converge_plan */
+    double reference_error; /* 0: a tenth of the smallest error */
+    double fit;             /* ms, 0: none */
+    double fit_work;        /* work units, a whole number, 0: none */
 } cost_options;
 
 /* VIT_USAGE: why->text names the option. */

@@ -11,9 +11,9 @@ typedef struct fit_budget {
     bool relmse;   /* accurate by total.relmse, not total.nmse */
 } fit_budget;
 
-/* Work units of passes' work, as vit_statistics.pass_work has it: the sum of exact counts, each kind times a small whole number (the
- * table in fit.c; about a tenth of a nanosecond on the CPU that they were measured on). Kinds that depend on the lane width count
- * nothing. `names`: of the `count` kinds, as vit_statistics has them. */
+/* Work units of passes' work, as vit_statistics.pass_work has it: the sum of exact counts, each kind times a small whole number
+ * (the table in fit.c; about a tenth of a nanosecond on the CPU that they were measured on). Kinds that depend on the lane
+ * width count nothing. `names`: of the `count` kinds, as vit_statistics has them. */
 uint64_t fit_work_units(const uint64_t work[][VIT_MAX_WORKS], uint32_t passes, const char *const *names, uint32_t count);
 
 /* Index of the most accurate setting within the budget, among those that a quality block can hold; of equally

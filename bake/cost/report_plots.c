@@ -229,9 +229,10 @@ static void say_nothing_drawn(const plot *p, FILE *to) {
 
 vit_status report_plot_error(const cost_results *r, report_measure by, FILE *to, vit_text *why) {
     plot p = {.r = r, .by = by, .left = 72, .right = 984, .top = 14, .bottom = 466};
-    p.drawing = by == REPORT_NMSE
-                    ? (report_drawing){"plot-nmse", "NMSE against milliseconds a frame, with the Pareto front", 1000, 520, false}
-                    : (report_drawing){"plot-relmse", "relMSE against milliseconds a frame, with the Pareto front", 1000, 520, false};
+    p.drawing =
+        by == REPORT_NMSE
+            ? (report_drawing){"plot-nmse", "NMSE against milliseconds a frame, with the Pareto front", 1000, 520, false}
+            : (report_drawing){"plot-relmse", "relMSE against milliseconds a frame, with the Pareto front", 1000, 520, false};
     char *script = NULL;
     size_t size = 0;
     vit_status status = VIT_OK;
@@ -280,7 +281,8 @@ static void print_tracer(const plot *p, double one, FILE *to) {
 vit_status report_plot_tracer(const cost_results *r, report_measure by, FILE *to, vit_text *why) {
     plot p = {.r = r, .by = by, .left = 66, .right = 546, .top = 14, .bottom = 336};
     const char *const ids[] = {"plot-tracer-nmse", "plot-tracer-relmse"};
-    p.drawing = (report_drawing){ids[by], "Error against time: the settings' points and the path tracer's line", 560, 390, false};
+    p.drawing =
+        (report_drawing){ids[by], "Error against time: the settings' points and the path tracer's line", 560, 390, false};
     const double one = by == REPORT_NMSE ? r->path_tracer_nmse : r->path_tracer_relmse;
     const double more[][2] = {{r->path_tracer_ms, one},
                               {report_equal_ms(r, &r->settings[0], by), report_error(&r->settings[0], by)}};

@@ -43,8 +43,8 @@ static const char *past_space(const char *p) {
     }
 }
 
-/* The brace that opens the group whose name ends before p, or the quote of a word in its place ("auto"); NULL: p is followed by something
- * else. */
+/* The brace that opens the group whose name ends before p, or the quote of a word in its place ("auto"); NULL: p is followed by
+ * something else. */
 static const char *opening(const char *p) {
     p = past_space(p);
     if (*p != ':' && *p != '=')

@@ -13,11 +13,7 @@ static const struct {
     const char *name;
     scene_maker *make;
 } makers[] = {
-    {"cornell", cornell_make},
-    {"furnace", furnace_make},
-    {"atrium", atrium_make},
-    {"balls", balls_make},
-    {"rooms", rooms_make},
+    {"cornell", cornell_make}, {"furnace", furnace_make}, {"atrium", atrium_make}, {"balls", balls_make}, {"rooms", rooms_make},
 };
 
 static const char usage[] =
@@ -69,7 +65,8 @@ static bool is_source(const struct stat *file, const char *source) {
     char path[SCENES_PATH];
     struct stat s;
     for (size_t i = 0; i < sizeof makers / sizeof makers[0]; i++)
-        if (scenes_path(path, source, makers[i].name, ".cfg") && stat(path, &s) == 0 && s.st_dev == file->st_dev && s.st_ino == file->st_ino)
+        if (scenes_path(path, source, makers[i].name, ".cfg") && stat(path, &s) == 0 && s.st_dev == file->st_dev &&
+            s.st_ino == file->st_ino)
             return true;
     return false;
 }

@@ -14,7 +14,7 @@ typedef struct octree_triangle {
 } octree_triangle;
 
 /* What a ray walks through. box[0], box[1]: the root's corners. index, nodes: octree.h, a node is (first, count). */
-#define OCTREE_PARAMETERS                                                                                                        \
+#define OCTREE_PARAMETERS                                                                                                      \
     global const float4 *box, global const uint2 *nodes, global const uint *index, global const octree_triangle *triangles
 #define OCTREE box, nodes, index, triangles
 
@@ -29,35 +29,30 @@ typedef struct octree_work {
 #define OCTREE_FUSED 0
 #endif
 
-static inline float octree_dot(float3 a, float3 b)
-{
+static inline float octree_dot(float3 a, float3 b) {
     return OCTREE_FUSED ? fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)) : a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /* a * b - c * d */
-static inline float octree_minor(float a, float b, float c, float d)
-{
+static inline float octree_minor(float a, float b, float c, float d) {
     return OCTREE_FUSED ? fma(a, b, -(c * d)) : a * b - c * d;
 }
 
-static inline float3 octree_cross(float3 a, float3 b)
-{
+static inline float3 octree_cross(float3 a, float3 b) {
     return (float3)(octree_minor(a.y, b.z, a.z, b.y), octree_minor(a.z, b.x, a.x, b.z), octree_minor(a.x, b.y, a.y, b.x));
 }
 
-static inline float octree_most(float3 t)
-{
+static inline float octree_most(float3 t) {
     return fmax(t.x, fmax(t.y, t.z));
 }
 
-static inline float octree_least(float3 t)
-{
+static inline float octree_least(float3 t) {
     return fmin(t.x, fmin(t.y, t.z));
 }
 
-/* Distance at which the ray hits the triangle, or 0: (t, u, v) = (Q E2, P T, Q d) / (P E1) with P = d x E2, Q = T x E1, T from the first vertex to o. */
-static inline float octree_hit(global const octree_triangle *g, float3 o, float3 d)
-{
+/* Distance at which the ray hits the triangle, or 0: (t, u, v) = (Q E2, P T, Q d) / (P E1) with P = d x E2, Q = T x E1, T from
+ * the first vertex to o. */
+static inline float octree_hit(global const octree_triangle *g, float3 o, float3 d) {
     float3 e1 = g->e1.xyz, e2 = g->e2.xyz, p = octree_cross(d, e2);
     float det = octree_dot(p, e1);
     if (det == 0.0f)
@@ -81,27 +76,23 @@ typedef struct octree_frame {
 } octree_frame;
 
 /* The child at distance max(t0, 0): bit by bit, whether the middle plane lies behind the ray there. */
-static inline uint octree_first_child(float3 t0, float3 tm)
-{
+static inline uint octree_first_child(float3 t0, float3 tm) {
     float enter = fmax(octree_most(t0), 0.0f);
     return (tm.x < enter ? 4u : 0u) | (tm.y < enter ? 2u : 0u) | (tm.z < enter ? 1u : 0u);
 }
 
-static inline float3 octree_by_bits(uint child, float3 set, float3 clear)
-{
+static inline float3 octree_by_bits(uint child, float3 set, float3 clear) {
     return (float3)(child & 4u ? set.x : clear.x, child & 2u ? set.y : clear.y, child & 1u ? set.z : clear.z);
 }
 
 /* The child behind the plane through which the ray leaves this one; 8: it leaves the octant. */
-static inline uint octree_next_child(uint child, float3 leave)
-{
+static inline uint octree_next_child(uint child, float3 leave) {
     uint bit = leave.x < leave.y ? (leave.x < leave.z ? 4u : 1u) : (leave.y < leave.z ? 2u : 1u);
     return child & bit ? 8u : child | bit;
 }
 
 /* Directions are mirrored to be positive: `mirror` has the bits of children to flip. A zero becomes tiny: no 0 * inf. */
-static inline uint octree_mirror(global const float4 *box, float3 *o, float3 *d)
-{
+static inline uint octree_mirror(global const float4 *box, float3 *o, float3 *d) {
     float3 sum = box[0].xyz + box[1].xyz;
     uint mirror = (d->x < 0.0f ? 4u : 0u) | (d->y < 0.0f ? 2u : 0u) | (d->z < 0.0f ? 1u : 0u);
     *o = octree_by_bits(mirror, sum - *o, *o);
@@ -110,8 +101,7 @@ static inline uint octree_mirror(global const float4 *box, float3 *o, float3 *d)
 }
 
 /* Nearest hit, or with `any` the first that is found. Returns the triangle or VIT_NONE; *t: limit in, distance out. */
-static inline uint octree_walk(OCTREE_PARAMETERS, float3 o, float3 d, int any, float *t, octree_work *work)
-{
+static inline uint octree_walk(OCTREE_PARAMETERS, float3 o, float3 d, int any, float *t, octree_work *work) {
     octree_frame stack[OCTREE_DEEPEST];
     float3 from = o, along = d;
     uint mirror = octree_mirror(box, &from, &along), found = VIT_NONE, node = 0;
@@ -159,28 +149,28 @@ static inline uint octree_walk(OCTREE_PARAMETERS, float3 o, float3 d, int any, f
 }
 
 /* Planes of n values: origin, unit direction, limit (negative: no ray). */
-#define OCTREE_RAY                                                                                                               \
-    uint i = (uint)get_global_id(0), n = count[0];                                                                               \
-    float3 o = (float3)(rays[i], rays[n + i], rays[2 * n + i]), d = (float3)(rays[3 * n + i], rays[4 * n + i], rays[5 * n + i]);    \
-    float t = rays[6 * n + i];                                                                                                   \
+#define OCTREE_RAY                                                                                                             \
+    uint i = (uint)get_global_id(0), n = count[0];                                                                             \
+    float3 o = (float3)(rays[i], rays[n + i], rays[2 * n + i]),                                                                \
+           d = (float3)(rays[3 * n + i], rays[4 * n + i], rays[5 * n + i]);                                                    \
+    float t = rays[6 * n + i];                                                                                                 \
     octree_work work = {0, 0}
 
-kernel void octree_nearest(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global float *distance, global uint *triangle)
-{
+kernel void octree_nearest(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global float *distance,
+                           global uint *triangle) {
     OCTREE_RAY;
     triangle[i] = t >= 0.0f ? octree_walk(OCTREE, o, d, 0, &t, &work) : VIT_NONE;
     distance[i] = t;
 }
 
-kernel void octree_any(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global uint *occluded)
-{
+kernel void octree_any(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global uint *occluded) {
     OCTREE_RAY;
     occluded[i] = t >= 0.0f && octree_walk(OCTREE, o, d, 1, &t, &work) != VIT_NONE ? 1u : 0u;
 }
 
 /* Sums over no rays but this one: octants and tests, for nearest (any[0] is 0) or any hit. */
-kernel void octree_work_of(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global const uint *any, global uint2 *done)
-{
+kernel void octree_work_of(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global const uint *any,
+                           global uint2 *done) {
     OCTREE_RAY;
     if (t >= 0.0f)
         octree_walk(OCTREE, o, d, (int)any[0], &t, &work);
@@ -188,8 +178,8 @@ kernel void octree_work_of(OCTREE_PARAMETERS, global const float *rays, global c
 }
 
 /* Without a tree: every triangle, the same test, the same ties. count[1]: triangles. */
-kernel void octree_nearest_of_all(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global float *distance, global uint *triangle)
-{
+kernel void octree_nearest_of_all(OCTREE_PARAMETERS, global const float *rays, global const uint *count, global float *distance,
+                                  global uint *triangle) {
     OCTREE_RAY;
     uint found = VIT_NONE;
     for (uint g = 0; t >= 0.0f && g < count[1]; g++) {

@@ -1,6 +1,6 @@
-/* The tree of kernels/METHODS.md, "What we correct": a scene's box cut into eight equal octants, and these again, until few triangles are left in one or
- * the tree is as deep as it may be. Built on the host, walked by octree.cl. A rival for the benches and an oracle for what the
- * BVH and the watertight test repair; nothing of the product uses it. */
+/* The tree of kernels/METHODS.md, "What we correct": a scene's box cut into eight equal octants, and these again, until few
+ * triangles are left in one or the tree is as deep as it may be. Built on the host, walked by octree.cl. A rival for the
+ * benches and an oracle for what the BVH and the watertight test repair; nothing of the product uses it. */
 #ifndef VIT_BASELINE_OCTREE_H
 #define VIT_BASELINE_OCTREE_H
 

@@ -1,6 +1,7 @@
-/* The plain octree and triangle test (kernels/METHODS.md, "What we correct"; tests/baselines/) against our BVH and watertight test, one process, in
- * turn, the same rays on the same device: view rays, and shadow rays of their hits. Hits are compared before anything is timed;
- * what both do for a ray is counted apart, untimed. Then what leaks at shared edges. Cut-outs are filled on both sides. */
+/* The plain octree and triangle test (kernels/METHODS.md, "What we correct"; tests/baselines/) against our BVH and watertight
+ * test, one process, in turn, the same rays on the same device: view rays, and shadow rays of their hits. Hits are compared
+ * before anything is timed; what both do for a ray is counted apart, untimed. Then what leaks at shared edges. Cut-outs are
+ * filled on both sides. */
 #include "measure.h" /* before scene.h, whose type its parameter hides */
 #include "octree_leaks.h"
 #include "octree_scenes.h"

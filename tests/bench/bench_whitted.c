@@ -1,7 +1,7 @@
 /* Ray tracing in the manner of Whitted: view rays, smooth normals and hard shadows of one point light, no photons, 1280x968.
- * Frames a second against those that Kristek 2011 states for its GPU (kernels/METHODS.md, "The four systems"), on the Stanford bunny and on our balls, which
- * stand in for its scene of as many triangles. Every frame's hash is checked before any is timed; scenes and settings then take
- * turns. */
+ * Frames a second against those that Kristek 2011 states for its GPU (kernels/METHODS.md, "The four systems"), on the Stanford
+ * bunny and on our balls, which stand in for its scene of as many triangles. Every frame's hash is checked before any is timed;
+ * scenes and settings then take turns. */
 #include "scenes.h"
 #include "vitrine.h"
 

@@ -37,8 +37,7 @@ static inline bool photon_touches(const hierarchy *h, uint32_t node, const vit_p
         o[k] = x - (lo > inside ? lo : inside);
         least[k] = a < b ? a : b;
     }
-    return fmaf(o[2], o[2], fmaf(o[1], o[1], o[0] * o[0])) < p->radius2 * 1.000001f &&
-           least[0] + least[1] + least[2] < 1e-6f;
+    return fmaf(o[2], o[2], fmaf(o[1], o[1], o[0] * o[0])) < p->radius2 * 1.000001f && least[0] + least[1] + least[2] < 1e-6f;
 }
 
 /* Is the box's farthest corner within the sphere? */

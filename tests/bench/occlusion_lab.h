@@ -77,8 +77,7 @@ static inline double occlusion_run(occlusion_lab *l, player *p) {
     const vit_opencl *d = p->v->state;
     cl_event event;
     cl_ulong begin, end;
-    lab_check(clEnqueueNDRangeKernel(d->queue, l->kernel, 1, NULL, &global, &local, 0, NULL, &event),
-              "bench_occlusion");
+    lab_check(clEnqueueNDRangeKernel(d->queue, l->kernel, 1, NULL, &global, &local, 0, NULL, &event), "bench_occlusion");
     lab_check(clWaitForEvents(1, &event), "clWaitForEvents");
     lab_check(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof begin, &begin, NULL), "profiling");
     lab_check(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, NULL), "profiling");
@@ -90,8 +89,7 @@ static inline uint32_t *occlusion_read(occlusion_lab *l, player *p) {
     const size_t n = p->v->pack.scene->samples;
     const vit_opencl *d = p->v->state;
     uint32_t *out = bench_array(n, 4);
-    lab_check(clEnqueueReadBuffer(d->queue, l->occluded, CL_TRUE, 0, n * 4, out, 0, NULL, NULL),
-              "clEnqueueReadBuffer");
+    lab_check(clEnqueueReadBuffer(d->queue, l->occluded, CL_TRUE, 0, n * 4, out, 0, NULL, NULL), "clEnqueueReadBuffer");
     return out;
 }
 

@@ -1,10 +1,11 @@
 /* Each effect has a scene that calls for it and scenes that do not, and costs the latter nothing.
  *
- * Why this is hard: that an absent effect changes nothing can only be seen where it is present and has nothing to do. Strategy: one
- * scene, a stage with a thing on it, is baked with the thing of plain matt paint, with the thing as each effect would have it, and with
- * such a thing where no ray of the path comes. Packs are then opened up: the effect's bit is set in a pack that has no use for it, with
- * all that the loader wants of such a pack, and every frame must keep its bits; the bit is cleared in the pack that has, and they must
- * change. All on the device host, which compiles every effect into one program and reports from the runtime's tables. */
+ * Why this is hard: that an absent effect changes nothing can only be seen where it is present and has nothing to do. Strategy:
+ * one scene, a stage with a thing on it, is baked with the thing of plain matt paint, with the thing as each effect would have
+ * it, and with such a thing where no ray of the path comes. Packs are then opened up: the effect's bit is set in a pack that
+ * has no use for it, with all that the loader wants of such a pack, and every frame must keep its bits; the bit is cleared in
+ * the pack that has, and they must change. All on the device host, which compiles every effect into one program and reports
+ * from the runtime's tables. */
 #include "scene_lab.h"
 
 #include "cost/adds.h"
@@ -25,18 +26,31 @@ static const char stage[] =
     "vn 0.6 0.6 0.52915\nvn -0.6 0.6 0.52915\nvn 0.6 0.6 -0.52915\nvn -0.6 0.6 -0.52915\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "usemtl stone\nf 4/1 3/2 2/3 1/4\nf 1/1 2/2 6/3 5/4\n"
-    "f 15/1 16/2 17/3 18/4\nf 19/1 22/2 21/3 20/4\nf 15/1 19/2 20/3 16/4\nf 16/1 20/2 21/3 17/4\nf 17/1 21/2 22/3 18/4\nf 18/1 22/2 19/3 15/4\n"
-    "usemtl thing\nf 14/1%s 13/2%s 12/3%s 11/4%s\nf 10/1 9/2 13/3 14/4\nf 8/1 7/2 11/3 12/4\nf 9/1 8/2 12/3 13/4\nf 7/1 10/2 14/3 11/4\n"
+    "f 15/1 16/2 17/3 18/4\nf 19/1 22/2 21/3 20/4\nf 15/1 19/2 20/3 16/4\nf 16/1 20/2 21/3 17/4\n"
+    "f 17/1 21/2 22/3 18/4\nf 18/1 22/2 19/3 15/4\n"
+    "usemtl thing\nf 14/1%s 13/2%s 12/3%s 11/4%s\nf 10/1 9/2 13/3 14/4\nf 8/1 7/2 11/3 12/4\n"
+    "f 9/1 8/2 12/3 13/4\nf 7/1 10/2 14/3 11/4\n"
     "usemtl secret\nf 23/1 24/2 25/3\n";
 static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 0.5 0.6\nnewmtl secret\nKd 0.5 0.5 0.5\n";
 
-#define LAMP "{ type = \"point\"; keys = ( { position = [0.9, 2.5, 0.6]; power = [50.0, 60.0, 70.0]; }, { time = 0.1; position = [1.2, 2.5, 0.6]; } ); }"
+#define LAMP                                                                                                                   \
+    "{ type = \"point\"; keys = ( { position = [0.9, 2.5, 0.6]; power = [50.0, 60.0, 70.0]; "                                  \
+    "}, { time = 0.1; position = [1.2, 2.5, 0.6]; } ); }"
 
 /* X(macro, lights, settings of `thing`, more of the scene, more of the quality block): scenes that call for the effects. */
 #define SCENES(X)                                                                                                              \
-    X(SPOT, "{ type = \"spot\"; inner = 20.0; outer = 50.0; keys = ( { position = [0.9, 2.5, 0.6]; target = [0.0, 0.0, 0.0]; power = [50.0, 60.0, 70.0]; } ); }", "", "", "") \
-    X(RANGE, "{ type = \"point\"; range = 6.0; keys = ( { position = [0.9, 2.5, 0.6]; power = [50.0, 60.0, 70.0]; } ); }", "", "", "") \
-    X(DIRECTIONAL, "{ type = \"directional\"; keys = ( { position = [1.0, 2.0, 1.0]; target = [0.0, 0.0, 0.0]; irradiance = [3.0, 3.0, 2.0]; } ); }", "", "", "") \
+    X(SPOT,                                                                                                                    \
+      "{ type = \"spot\"; inner = 20.0; outer = 50.0; keys = ( { position = [0.9, 2.5, 0.6]; "                                 \
+      "target = [0.0, 0.0, 0.0]; power = [50.0, 60.0, 70.0]; } ); }",                                                          \
+      "", "", "")                                                                                                              \
+    X(RANGE,                                                                                                                   \
+      "{ type = \"point\"; range = 6.0; keys = ( { position = [0.9, 2.5, 0.6]; power = [50.0, 60.0, 70.0]; "                   \
+      "} ); }",                                                                                                                \
+      "", "", "")                                                                                                              \
+    X(DIRECTIONAL,                                                                                                             \
+      "{ type = \"directional\"; keys = ( { position = [1.0, 2.0, 1.0]; target = [0.0, 0.0, 0.0]; "                            \
+      "irradiance = [3.0, 3.0, 2.0]; } ); }",                                                                                  \
+      "", "", "")                                                                                                              \
     X(TEXTURES, LAMP, "texture = \"holes.tga\";", "", "")                                                                      \
     X(CUTOUT, LAMP, "texture = \"holes.tga\"; cutoff = 0.5;", "", "")                                                          \
     X(EMISSION, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = false;", "", "")                                               \
@@ -62,7 +76,8 @@ static const struct {
 enum { SCENE_COUNT = sizeof scenes / sizeof scenes[0] };
 
 /* Bakes the stage; what the baker says is then in the laboratory's out.txt. `secret`: the material of the vault's thing. */
-static void bake(scene_lab *l, const char *lights, const char *thing, const char *secret, const char *more, const char *quality, bool bent) {
+static void bake(scene_lab *l, const char *lights, const char *thing, const char *secret, const char *more, const char *quality,
+                 bool bent) {
     FILE *f = scene_lab_create(l, "stage.obj");
     (void)fprintf(f, stage, bent ? "/1" : "", bent ? "/2" : "", bent ? "/3" : "", bent ? "/4" : "");
     (void)fclose(f);
@@ -83,12 +98,13 @@ static void bake(scene_lab *l, const char *lights, const char *thing, const char
     assert_int_equal(fwrite(picture, 1, sizeof picture, f), sizeof picture);
     (void)fclose(f);
     f = scene_lab_create(l, "stage.cfg");
-    (void)fprintf(f,
-                  "output: { width = 80; height = 64; frames = %d; };\nmeshes = ( { file = \"stage.obj\"; } );\n"
-                  "camera: { keys = ( { eye = [0.6, 1.6, 4.5]; target = [0.0, 0.8, 0.0]; fov = 45.0; } ); };\nlights = ( %s );\n"
-                  "materials = ( { name = \"thing\"; %s }, { name = \"secret\"; %s } );\n%s\n"
-                  "quality: { photons = 1500; radius = 0.4; tile = 16; indirect_samples = 1; %s };\n",
-                  FRAMES, lights, thing, secret, more, quality);
+    (void)fprintf(
+        f,
+        "output: { width = 80; height = 64; frames = %d; };\nmeshes = ( { file = \"stage.obj\"; } );\n"
+        "camera: { keys = ( { eye = [0.6, 1.6, 4.5]; target = [0.0, 0.8, 0.0]; fov = 45.0; } ); };\nlights = ( %s );\n"
+        "materials = ( { name = \"thing\"; %s }, { name = \"secret\"; %s } );\n%s\n"
+        "quality: { photons = 1500; radius = 0.4; tile = 16; indirect_samples = 1; %s };\n",
+        FRAMES, lights, thing, secret, more, quality);
     (void)fclose(f);
     scene_lab_bake(l, "stage.cfg", "--explain");
 }
@@ -143,7 +159,8 @@ static played play(const void *bytes, size_t size) {
     return r;
 }
 
-/* The pack with the effect in it and nothing for it to act on: data that the loader wants of such a pack are there and do nothing. */
+/* The pack with the effect in it and nothing for it to act on: data that the loader wants of such a pack are there and do
+ * nothing. */
 static played play_idle(const void *bytes, uint64_t effect) {
     static vit_emitter dark[2 * VIT_PATTERNS];
     static vit_sky_texel texels[9];
@@ -215,8 +232,8 @@ static void has_the_tables_of(const char *name, const played *a, const played *b
     for (uint32_t i = 0; i < a->need.buffer_count; i++) {
         assert_string_equal(a->need.buffers[i].name, b->need.buffers[i].name);
         if (a->need.buffers[i].bytes != b->need.buffers[i].bytes)
-            fail_msg("%s: buffer %s: %llu and %llu bytes", name, a->need.buffers[i].name, (unsigned long long)a->need.buffers[i].bytes,
-                     (unsigned long long)b->need.buffers[i].bytes);
+            fail_msg("%s: buffer %s: %llu and %llu bytes", name, a->need.buffers[i].name,
+                     (unsigned long long)a->need.buffers[i].bytes, (unsigned long long)b->need.buffers[i].bytes);
     }
 }
 
@@ -284,7 +301,8 @@ static void each_is_called_for_by_its_scene_and_changes_it(void **state) {
 /* A thing that no ray of the path reaches calls for nothing: tables and work are those of the plain scene. */
 static void what_is_never_reached_is_not_called_for(void **state) {
     scene_lab *l = *state;
-    static const uint64_t of_surfaces = VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
+    static const uint64_t of_surfaces =
+        VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
     size_t size;
     bake(l, LAMP, "", "", "", "", false);
     void *bytes = load(l, &size);
@@ -350,7 +368,8 @@ static void effects_can_be_forced_on_and_off(void **state) {
     free(bytes);
     assert_int_equal(none.need.effects & EFFECTS_NAMED, 0);
     assert_true(scene_lab_said(l, "warning: mirror is left out: material 'thing' (10 triangles), visible in all frames"));
-    assert_memory_equal(listed.hash, none.hash, sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
+    assert_memory_equal(listed.hash, none.hash,
+                        sizeof none.hash); /* a mirror that is left out is none for glass's passes either */
 }
 
 static void sources_that_are_left_out_give_no_photons(void **state) {
@@ -378,7 +397,8 @@ static void a_mirror_that_is_left_out_does_not_shine(void **state) {
     size_t size;
     uint64_t hash[2][FRAMES];
     for (int i = 0; i < 2; i++) {
-        bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", i ? "effects = [\"gloss\"];" : "effects = [];", "", false);
+        bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", i ? "effects = [\"gloss\"];" : "effects = [];", "",
+             false);
         void *bytes = load(l, &size);
         const played p = play(bytes, size);
         assert_int_equal(p.need.effects & EFFECTS_NAMED, i ? VIT_BIT(GLOSS) : 0);
@@ -406,10 +426,11 @@ static void caustics_of_still_lights_are_called_for_too(void **state) {
 static void mirrors_and_glass_are_left_out_one_by_one(void **state) {
     scene_lab *l = *state;
     size_t size;
-    bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }, { name = \"stone\"; kind = \"thin_glass\";", "", "background = [0.3, 0.4, 0.5];", "", false);
+    bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }, { name = \"stone\"; kind = \"thin_glass\";", "",
+         "background = [0.3, 0.4, 0.5];", "", false);
     void *bytes = load(l, &size);
-    const played both = play(bytes, size), glass = play_without(bytes, VIT_BIT(MIRROR)), mirror = play_without(bytes, VIT_BIT(GLASS)),
-                 none = play_without(bytes, VIT_BIT(MIRROR) | VIT_BIT(GLASS));
+    const played both = play(bytes, size), glass = play_without(bytes, VIT_BIT(MIRROR)),
+                 mirror = play_without(bytes, VIT_BIT(GLASS)), none = play_without(bytes, VIT_BIT(MIRROR) | VIT_BIT(GLASS));
     for (uint32_t k = 0; k < FRAMES; k++) {
         const uint64_t hashes[] = {both.hash[k], glass.hash[k], mirror.hash[k], none.hash[k]};
         for (int i = 0; i < 4; i++)

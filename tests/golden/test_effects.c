@@ -118,8 +118,7 @@ static void without_photons_four_passes_and_no_photon_buffer_are_left(void **sta
     assert_int_equal(need.pass_count, 4);
     for (uint32_t i = 0; i < 4; i++)
         assert_string_equal(need.passes[i], passes[i]);
-    assert_int_equal(
-        need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS)), 0);
+    assert_int_equal(need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS)), 0);
     static const char buffers[] = " scene cameras lights triangles attributes bvh materials hit_triangle hit_distance position "
                                   "normal albedo direct counters framebuffer ";
     for (uint32_t i = 0; i < need.buffer_count; i++)
@@ -261,7 +260,8 @@ static void open_and_play_one(const char *name, vit_view view) {
     }
     if (words != p.need.pass_count)
         fail_msg("%s: %u passes, but these kernels were compiled:%s", name, p.need.pass_count, compiled);
-    const uint64_t opening = asked.order; /* it has run each kernel already, in the sizes of the frame: nothing is left to compile */
+    const uint64_t opening =
+        asked.order; /* it has run each kernel already, in the sizes of the frame: nothing is left to compile */
     memset(asked.runs, 0, sizeof asked.runs);
     asked.enqueued = 0;
     asked.order = 0;
@@ -280,8 +280,9 @@ static void open_and_play_one(const char *name, vit_view view) {
 
 static void what_is_made_and_compiled_is_what_was_required_and_no_more(void **state) {
     (void)state;
-    static const char *const packs[] = {"list",  "buckets", "raw",    "dark",        "room",
-                                        "still", "lamp",    "sparse", "sparse-room", "sparse-buckets", "small", "small-sparse", "shine"};
+    static const char *const packs[] = {"list",  "buckets",      "raw",    "dark",        "room",
+                                        "still", "lamp",         "sparse", "sparse-room", "sparse-buckets",
+                                        "small", "small-sparse", "shine"};
     for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
         open_and_play_one(packs[i], VIT_VIEW_final);
 }

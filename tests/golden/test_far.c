@@ -50,7 +50,8 @@ static void a_scene_far_away_has_the_bits_that_it_has_at_the_origin(void **state
 
 static void says(scene_lab *l, const char *scene, const char *text, bool wanted) {
     char line[256];
-    (void)snprintf(line, sizeof line, "%s -o %s --no-check --device host", scene_lab_path(l, scene), scene_lab_path(l, "scene.vit"));
+    (void)snprintf(line, sizeof line, "%s -o %s --no-check --device host", scene_lab_path(l, scene),
+                   scene_lab_path(l, "scene.vit"));
     scene_lab_run(l, "vitrine-bake", line);
     if (scene_lab_said(l, text) != wanted)
         fail_msg("%s: %s'%s'", scene, wanted ? "no " : "", text);

@@ -61,12 +61,12 @@ static void write_sphere(scene_lab *l, int n) {
     (void)fclose(f);
 }
 
-/* Walls that emit and light one another, each point of them the same: radiance L (1 + rho + rho^2 + ...), of which view samples see one
- * reflection by points on the walls, and photons are the others. */
+/* Walls that emit and light one another, each point of them the same: radiance L (1 + rho + rho^2 + ...), of which view samples
+ * see one reflection by points on the walls, and photons are the others. */
 static void write_glowing_scene(scene_lab *l) {
     FILE *f = scene_lab_create(l, "glowing.cfg");
-    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"box.obj\"; } );\n", SIDE,
-                  SIDE, VIEWS);
+    (void)fprintf(f, "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"box.obj\"; } );\n",
+                  SIDE, SIDE, VIEWS);
     write_views(f, eye);
     (void)fprintf(f, "materials = ( { name = \"half\"; emission = [%.1f, %.1f, %.1f]; } );\n", GLOW, GLOW, GLOW);
     (void)fprintf(f, "quality: { bounces = %d; tile = 8; radius = 0.1; photons = 65536; light_samples = 512; };\n", BOUNCES);
@@ -221,7 +221,8 @@ static void walls_that_emit_light_one_another(void **state) {
     double sum = GLOW * stored_albedo(ALBEDO), part = sum;
     for (int k = 1; k < BOUNCES; k++)
         sum += part *= ALBEDO;
-    const double direct = glowing_mean(*state, "direct") / (GLOW * (1 + stored_albedo(ALBEDO))), whole = glowing_mean(*state, "final") / (GLOW + sum);
+    const double direct = glowing_mean(*state, "direct") / (GLOW * (1 + stored_albedo(ALBEDO))),
+                 whole = glowing_mean(*state, "final") / (GLOW + sum);
     printf("glowing box: direct %+.2f %%, whole %+.2f %%\n", 100 * (direct - 1), 100 * (whole - 1));
     assert_true(fabs(direct - 1) < LIST_WITHIN);
     assert_true(fabs(whole - 1) < LIST_WITHIN);

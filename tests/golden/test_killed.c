@@ -61,8 +61,8 @@ static void remove_folder(const folder *f) {
 }
 
 static void begin_bake(const folder *f, const char *environment, const char *frames) {
-    tool_line(&r, "%s " TOOL_BAKE " " TEST_PACKS "/lamp.cfg -o %s --quiet --no-check --device host --frames %s", environment, f->pack,
-              frames);
+    tool_line(&r, "%s " TOOL_BAKE " " TEST_PACKS "/lamp.cfg -o %s --quiet --no-check --device host --frames %s", environment,
+              f->pack, frames);
     tool_begin(&r);
 }
 

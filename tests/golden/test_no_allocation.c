@@ -100,7 +100,8 @@ int __wrap_open(const char *path, int flags, ...) {
     return __real_open64(path, flags, 0600);
 }
 
-/* What the library's objects may need from outside: OpenCL, threads, memory and text in place, arithmetic, and what compilers put in. */
+/* What the library's objects may need from outside: OpenCL, threads, memory and text in place, arithmetic, and what compilers
+ * put in. */
 static const char *const allowed[] = {"memcpy",
                                       "memset",
                                       "memmove",
@@ -221,7 +222,8 @@ static void nothing_is_allocated_opened_or_printed_from_open_to_close(void **sta
 static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {
     (void)state;
     assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){.device = VIT_DEVICE_HOST, .threads = 3}), 0);
-    assert_int_equal(calls_of_a_whole_life("room-buckets", (vit_open_info){.device = VIT_DEVICE_HOST, .profile = 1, .count_work = 1}), 0);
+    assert_int_equal(
+        calls_of_a_whole_life("room-buckets", (vit_open_info){.device = VIT_DEVICE_HOST, .profile = 1, .count_work = 1}), 0);
 }
 
 static void nothing_is_allocated_when_the_caller_lends_the_framebuffer(void **state) {

@@ -27,7 +27,9 @@ static const char *device(void) {
 static void bake(void) {
     static tool_run r;
     test_packs_begin();
-    tool(&r, TOOL_BAKE " " TEST_PACKS "/room.cfg -o " PACK " --quiet --no-check --size %dx%d --frames %d --photons 200 --device host",
+    tool(&r,
+         TOOL_BAKE " " TEST_PACKS "/room.cfg -o " PACK
+                   " --quiet --no-check --size %dx%d --frames %d --photons 200 --device host",
          WIDTH, HEIGHT, FRAMES);
     tool_succeeds(&r);
     tool(&r, TOOL_PLAY " " PACK " --verify --quiet --device %s", device()); /* kernels are compiled now */

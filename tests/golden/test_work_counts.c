@@ -22,8 +22,8 @@ static uint64_t total(const vit_statistics *s, uint32_t kind) {
     return sum;
 }
 
-static const char *const packs[] = {"list",  "buckets", "room", "room-buckets", "raw",           "normal-keys",
-                                    "33x47", "still",   "dark", "sparse",       "sparse-buckets", "zones", "zones-buckets"};
+static const char *const packs[] = {"list",  "buckets", "room",   "room-buckets",   "raw",   "normal-keys",  "33x47",
+                                    "still", "dark",    "sparse", "sparse-buckets", "zones", "zones-buckets"};
 enum { PACKS = sizeof packs / sizeof packs[0] };
 
 /* Every pass and kind; those that depend on the lanes only if asked. */
@@ -49,14 +49,20 @@ static vit_statistics count(const char *pack, uint32_t device, uint32_t lanes, u
     return s;
 }
 
-/* Most of the time is PoCL's compiler, which makes each width and group size anew: not every pack in all ways, and the device host for
- * widths where it stands for them. */
+/* Most of the time is PoCL's compiler, which makes each width and group size anew: not every pack in all ways, and the device
+ * host for widths where it stands for them. */
 static void counts_are_the_same_for_any_lanes_and_groups(void **state) {
     (void)state;
     static const struct {
         uint32_t device, lanes, group;
         size_t packs; /* the first of them */
-    } ways[] = {{VIT_DEVICE_HOST, 1, 0, 6}, {0, 16, 0, 3}, {VIT_DEVICE_HOST, 8, 0, 6}, {0, 1, 0, 2}, {0, 8, 0, 2}, {0, 1, 64, 1}, {0, 16, 2, 1}};
+    } ways[] = {{VIT_DEVICE_HOST, 1, 0, 6},
+                {0, 16, 0, 3},
+                {VIT_DEVICE_HOST, 8, 0, 6},
+                {0, 1, 0, 2},
+                {0, 8, 0, 2},
+                {0, 1, 64, 1},
+                {0, 16, 2, 1}};
     static vit_statistics s[sizeof ways / sizeof ways[0]]; /* large for a stack */
     for (size_t i = 0; i < 6; i++)
         for (size_t w = 0; w < sizeof ways / sizeof ways[0]; w++) {
@@ -64,7 +70,8 @@ static void counts_are_the_same_for_any_lanes_and_groups(void **state) {
                 continue;
             uint64_t hash;
             char what[96];
-            (void)snprintf(what, sizeof what, "%s, device %x, lanes %u, group %u", packs[i], ways[w].device, ways[w].lanes, ways[w].group);
+            (void)snprintf(what, sizeof what, "%s, device %x, lanes %u, group %u", packs[i], ways[w].device, ways[w].lanes,
+                           ways[w].group);
             s[w] = count(packs[i], ways[w].device, ways[w].lanes, ways[w].group, &hash);
             for (size_t u = 0; u < w; u++)
                 if (i < ways[u].packs)
@@ -72,7 +79,8 @@ static void counts_are_the_same_for_any_lanes_and_groups(void **state) {
         }
 }
 
-/* The first two packs are also counted by OpenCL's device, whose compiler takes long; the test above holds both devices' counts together. */
+/* The first two packs are also counted by OpenCL's device, whose compiler takes long; the test above holds both devices' counts
+ * together. */
 static uint32_t device_for(const char *pack) {
     return strcmp(pack, packs[0]) == 0 || strcmp(pack, packs[1]) == 0 ? 0 : VIT_DEVICE_HOST;
 }

@@ -1,6 +1,6 @@
-/* Prints the golden and the played hash of every frame of a pack, on the device host: the smallest program that plays. For machines
- * other than this one: cross-compiled it needs the C library alone.
- *   hashes pack.vit [lanes]      exit 0 if all are equal, 4 if not */
+/* Prints the golden and the played hash of every frame of a pack, on the device host: the smallest program that plays. For
+ * machines other than this one: cross-compiled it needs the C library alone. hashes pack.vit [lanes]      exit 0 if all are
+ * equal, 4 if not */
 #include "vitrine.h"
 #include <inttypes.h>
 #include <stdio.h>

@@ -67,7 +67,8 @@ static inline void catalogue_none(const char *hard_case, const char *what, uint6
     catalogue_row(hard_case, what, (double)wrong, 0, unit);
 }
 
-/* Where something stops to hold: points to be drawn on logarithmic axes. What is 0 is drawn at the foot. Labels hold no quotes. */
+/* Where something stops to hold: points to be drawn on logarithmic axes. What is 0 is drawn at the foot. Labels hold no quotes.
+ */
 typedef struct catalogue_point {
     double x, y;
 } catalogue_point;

@@ -3,8 +3,8 @@
  * What can go wrong: a kernel gains or loses light where it splits, reflects, refracts or adds it up, in a way that no picture
  * betrays. A convex body sees nothing but the sky, of radiance 1 from everywhere: white paint, mirrors and glass that do not
  * absorb, whatever the shape and the number of reflections, have radiance 1 at each pixel; a lobe has the albedo of its
- * reflectance at that angle, integrated here; glass that absorbs, less. White paint and lobes see the sky by its fixed directions, whose
- * error falls with their number; the others follow rays and know none. */
+ * reflectance at that angle, integrated here; glass that absorbs, less. White paint and lobes see the sky by its fixed
+ * directions, whose error falls with their number; the others follow rays and know none. */
 #include "catalogue.h"
 #include "scene_lab.h"
 #include <math.h>
@@ -58,12 +58,14 @@ static double larger(double worst, double error) {
 
 /* Cosine between the ball's normal and the way to the eye at a pixel; 0 outside and near the silhouette. */
 static double pixel_cosine(int i) {
-    const double edge = tan(15 * PI / 180), x = edge * ((2 * (i % SIDE) + 1.0) / SIDE - 1), y = edge * ((2 * (i / SIDE) + 1.0) / SIDE - 1);
+    const double edge = tan(15 * PI / 180), x = edge * ((2 * (i % SIDE) + 1.0) / SIDE - 1),
+                 y = edge * ((2 * (i / SIDE) + 1.0) / SIDE - 1);
     const double off = DISTANCE * sqrt(x * x + y * y) / sqrt(1 + x * x + y * y); /* of the ray from the middle */
     return off < LIMIT ? sqrt(1 - off * off) : 0;
 }
 
-/* Albedo of a lobe of reflectance 1 at the angle of the given cosine: the integral of (m + 2) / (2 pi) cos^m a cos l over the ways out. */
+/* Albedo of a lobe of reflectance 1 at the angle of the given cosine: the integral of (m + 2) / (2 pi) cos^m a cos l over the
+ * ways out. */
 static double lobe_albedo(double cosine, double m) {
     enum { STEPS = 100 };
     const double sine = sqrt(1 - cosine * cosine);
@@ -89,9 +91,11 @@ static void white_paint_and_lobes_give_back_what_they_should(void **state) {
     static const struct {
         const char *name, *material;
         double matt, lobe, exponent, rms, mean;
-    } balls[] = {{"white paint", "color = [1.0, 1.0, 1.0];", 1, 0, 1, 2e-3, 3e-4 /* of it 2e-4 the mesh */},
-                 {"lobe of exponent 10", "color = [0.0, 0.0, 0.0]; specular = [1.0, 1.0, 1.0]; exponent = 10.0;", 0, 1, 10, 0.01, 2e-3},
-                 {"lobe of exponent 60 on paint", "color = [0.5, 0.5, 0.5]; specular = [0.5, 0.5, 0.5]; exponent = 60.0;", 0.5, 0.5, 60, 0.04, 2e-3}};
+    } balls[] = {
+        {"white paint", "color = [1.0, 1.0, 1.0];", 1, 0, 1, 2e-3, 3e-4 /* of it 2e-4 the mesh */},
+        {"lobe of exponent 10", "color = [0.0, 0.0, 0.0]; specular = [1.0, 1.0, 1.0]; exponent = 10.0;", 0, 1, 10, 0.01, 2e-3},
+        {"lobe of exponent 60 on paint", "color = [0.5, 0.5, 0.5]; specular = [0.5, 0.5, 0.5]; exponent = 60.0;", 0.5, 0.5, 60,
+         0.04, 2e-3}};
     static float pixels[FLOATS];
     for (size_t k = 0; k < sizeof balls / sizeof *balls; k++) {
         double square = 0, is = 0, should = 0, most = 0;
@@ -105,7 +109,8 @@ static void white_paint_and_lobes_give_back_what_they_should(void **state) {
             if (cosine == 0)
                 continue;
             /* code of a reflectance: to the nearest of 1023 squares */
-            const double step = floor(sqrt(balls[k].matt) * 1023 + 0.5) / 1023, lobe = floor(sqrt(balls[k].lobe) * 1023 + 0.5) / 1023;
+            const double step = floor(sqrt(balls[k].matt) * 1023 + 0.5) / 1023,
+                         lobe = floor(sqrt(balls[k].lobe) * 1023 + 0.5) / 1023;
             const double truth = step * step + (balls[k].lobe > 0 ? lobe * lobe * looked_up(albedo, cosine) : 0);
             square += pow((double)pixels[4 * i] / truth - 1, 2);
             is += (double)pixels[4 * i];
@@ -178,7 +183,8 @@ static void render_block(scene_lab *l, double above, float *pixels) {
     f = scene_lab_create(l, "scene.cfg");
     (void)fprintf(f,
                   "output: { width = %d; height = %d; frames = 1; };\nmeshes = ( { file = \"block.obj\"; } );\n"
-                  "background = [0.3, 0.4, 0.6];\nsky: { light = true; };\nmaterials = ( { name = \"block\"; kind = \"glass\"; ior = 1.5; } );\n"
+                  "background = [0.3, 0.4, 0.6];\nsky: { light = true; };\n"
+                  "materials = ( { name = \"block\"; kind = \"glass\"; ior = 1.5; } );\n"
                   "camera: { keys = ( { fov = 30.0; eye = [0.5, 1.2, 2.6]; target = [0.0, 0.3, 0.0]; } ); };\n"
                   "quality: { photons = 0; sky_samples = 16; };\n",
                   SIDE, SIDE);
@@ -187,7 +193,8 @@ static void render_block(scene_lab *l, double above, float *pixels) {
     scene_lab_play(l, "final", pixels, FLOATS);
 }
 
-/* Where its lowest face and the floor are in one place, which of them a ray meets must not be up to rounding, pixel by pixel. */
+/* Where its lowest face and the floor are in one place, which of them a ray meets must not be up to rounding, pixel by pixel.
+ */
 static void glass_on_a_floor_is_glass_just_above_it(void **state) {
     static float on[FLOATS], above[FLOATS];
     int differ = 0;
@@ -195,7 +202,8 @@ static void glass_on_a_floor_is_glass_just_above_it(void **state) {
     render_block(*state, 0.001, above);
     for (int i = 0; i < SIDE * SIDE; i++)
         differ += !(fabs((double)on[4 * i + 2] - (double)above[4 * i + 2]) <= 0.05);
-    catalogue_row("open furnace", "a block of glass on a floor: pixels unlike those of one 1 mm above", (double)differ / (SIDE * SIDE), 0.01, "of all");
+    catalogue_row("open furnace", "a block of glass on a floor: pixels unlike those of one 1 mm above",
+                  (double)differ / (SIDE * SIDE), 0.01, "of all");
 }
 
 static int set_up(void **state) {

@@ -1,10 +1,11 @@
 /* Scenes of all sizes and at all distances from the origin, against the same scene of 2.75 m at the origin.
  *
- * What can go wrong: constants in metres hidden in kernels or baker (a least distance, a near plane, the offset of rays), powers that
- * overflow or vanish, coordinates that are too far apart as floats. The bounds: nothing in the method knows metres, so a power of two
- * changes no bit, and any other scale no more than what the roundings of coordinates do; a scene that `translate` puts far away is moved to the
- * origin and loses nothing; numbers that are large in the mesh file itself have lost their last bits there, before us. Where
- * that shows the baker warns beforehand: the last point without a warning is held to a bound. */
+ * What can go wrong: constants in metres hidden in kernels or baker (a least distance, a near plane, the offset of rays),
+ * powers that overflow or vanish, coordinates that are too far apart as floats. The bounds: nothing in the method knows metres,
+ * so a power of two changes no bit, and any other scale no more than what the roundings of coordinates do; a scene that
+ * `translate` puts far away is moved to the origin and loses nothing; numbers that are large in the mesh file itself have lost
+ * their last bits there, before us. Where that shows the baker warns beforehand: the last point without a warning is held to a
+ * bound. */
 #include "catalogue.h"
 #include "scene_lab.h"
 #include <math.h>
@@ -16,23 +17,24 @@ typedef struct frame {
     bool warned;
 } frame;
 
-/* The room `size` times as large, `in_file` away in the mesh's own numbers and, with camera and light, `away` from the origin. Power
- * goes with the square of the size, so that radiance stays. */
+/* The room `size` times as large, `in_file` away in the mesh's own numbers and, with camera and light, `away` from the origin.
+ * Power goes with the square of the size, so that radiance stays. */
 static void render_with(scene_lab *l, const char *options, double size, double in_file, double away, frame *out) {
     const double half[3] = {1.125 * size, 0.875 * size, 1.375 * size};
     scene_lab_write_room(l, "room.obj", half, in_file);
     FILE *f = scene_lab_create(l, "scene.cfg");
     const double x = away + 0.25 * size, y = 0.0, z = away + 0.75 * size, power = 1e-3 * size * size;
-    (void)fprintf(f,
-                  "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\n"
-                  "meshes = ( { file = \"room.obj\"; translate = [%.17e, 0.0, %.17e]; } );\n"
-                  "camera: { near = %.17e; keys = ( { eye = [%.17e, %.17e, %.17e]; target = [%.17e, %.17e, %.17e]; fov = 70.0; "
-                  "exposure = 1.0; } ); };\n"
-                  "lights = ( { type = \"spot\"; inner = 40.0; outer = 60.0; keys = ( { position = [%.17e, %.17e, %.17e]; target = "
-                  "[%.17e, %.17e, %.17e]; power = [%.17e, %.17e, %.17e]; } ); } );\n"
-                  "quality: { photons = 2000; radius = %.17e; tile = 8; };\n",
-                  SIDE, SIDE, away - in_file, away - in_file, 0.125 * size, x, y, z, away - 0.5 * size, -0.25 * size, away - size, x,
-                  0.5 * size, z, away, -0.875 * size, away, 5 * power, 4 * power, 3 * power, 0.5 * size);
+    (void)fprintf(
+        f,
+        "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\n"
+        "meshes = ( { file = \"room.obj\"; translate = [%.17e, 0.0, %.17e]; } );\n"
+        "camera: { near = %.17e; keys = ( { eye = [%.17e, %.17e, %.17e]; target = [%.17e, %.17e, %.17e]; fov = 70.0; "
+        "exposure = 1.0; } ); };\n"
+        "lights = ( { type = \"spot\"; inner = 40.0; outer = 60.0; keys = ( { position = [%.17e, %.17e, %.17e]; target = "
+        "[%.17e, %.17e, %.17e]; power = [%.17e, %.17e, %.17e]; } ); } );\n"
+        "quality: { photons = 2000; radius = %.17e; tile = 8; };\n",
+        SIDE, SIDE, away - in_file, away - in_file, 0.125 * size, x, y, z, away - 0.5 * size, -0.25 * size, away - size, x,
+        0.5 * size, z, away, -0.875 * size, away, 5 * power, 4 * power, 3 * power, 0.5 * size);
     (void)fclose(f);
     scene_lab_bake(l, "scene.cfg", options);
     out->warned = scene_lab_said(l, "warning:");
@@ -127,7 +129,8 @@ static void distance_from_the_origin_changes_no_bit(void **state) {
         count++;
     }
     catalogue_sweep("offset", "distance from the origin by translate (m)", "NMSE against the same at the origin", moved, count);
-    catalogue_sweep("offset_in_file", "distance from 0 of the numbers in the mesh file (m)", "NMSE against the same at the origin", in_file, count);
+    catalogue_sweep("offset_in_file", "distance from 0 of the numbers in the mesh file (m)",
+                    "NMSE against the same at the origin", in_file, count);
     catalogue_none("far away", "distances to 5e5 m by translate that change a bit", wrong, count, "distances");
     catalogue_row("far away", "the mesh file's own numbers far from 0; where nothing warns", worst, 3e-10, "NMSE");
 }

@@ -118,11 +118,12 @@ static void a_lamp_close_over_its_floor_lights_as_lambert_says(void **state) {
         const double gap = bounds[k].gap, eye = 3, edge = 0.6; /* m; what is seen of the floor */
         write_lamp(*state, "close.obj", gap);
         FILE *f = scene_lab_create(*state, "close.cfg");
-        (void)fprintf(f,
-                      "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"close.obj\"; } );\n"
-                      "camera: { near = 0.1; keys = ( { fov = %.9g; eye = [0.0, %.2f, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, "
-                      "0.0, -1.0]; } ); };\nquality: { photons = 0; };\n",
-                      SIDE, SIDE, 2 * atan(edge / eye) * 180 / PI, eye);
+        (void)fprintf(
+            f,
+            "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"close.obj\"; } );\n"
+            "camera: { near = 0.1; keys = ( { fov = %.9g; eye = [0.0, %.2f, 0.0]; target = [0.0, 0.0, 0.0]; up = [0.0, "
+            "0.0, -1.0]; } ); };\nquality: { photons = 0; };\n",
+            SIDE, SIDE, 2 * atan(edge / eye) * 180 / PI, eye);
         (void)fclose(f);
         scene_lab_bake(*state, "close.cfg", "");
         scene_lab_play(*state, "direct", pixels, FLOATS);

@@ -135,7 +135,7 @@ static void a_little_endian_machine_looks_at_what_lies_there(void **state) {
     static const vit_cell cells[3];
     const vit_cell *second = VIT_RECORD(vit_cell, cells, 1);
     assert_ptr_equal(second, &cells[1]);
-#define X(name, word, bytes, word_bytes, meaning)                                                                                                \
+#define X(name, word, bytes, word_bytes, meaning)                                                                              \
     assert_true(vit_hash_frame("0123456789abcdef", VIT_FORMAT_##name, 16) == vit_hash("0123456789abcdef", 16));
     VIT_FORMATS(X)
 #undef X

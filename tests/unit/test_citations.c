@@ -4,8 +4,8 @@
  * A citation is `FILE.md`, or `FILE.md, "Section"`, or `FILE.md, "Section" (7)` with an equation's number, in code, comments
  * and READMEs; the file's path begins at the repository's root or at the file that cites. Code that cites METHODS.md says where
  * in it. A year in a comment is that of a source, whose name stands beside it: [Name Year] of METHODS.md. Texts are read with
- * line ends and comment marks as blanks, so that a citation may run over a line's end. "name() of FOLDER/FILE" is a function that
- * is there. */
+ * line ends and comment marks as blanks, so that a citation may run over a line's end. "name() of FOLDER/FILE" is a function
+ * that is there. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>

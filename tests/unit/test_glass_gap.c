@@ -1,4 +1,5 @@
-/* Glass drawn in: faces move by the gap, bodies stay closed, nothing else moves, and triangles too small for the gap keep their way round. */
+/* Glass drawn in: faces move by the gap, bodies stay closed, nothing else moves, and triangles too small for the gap keep their
+ * way round. */
 #include "glass_gap.h"
 #include "triangle.h"
 #include "vitrine_pack.h"
@@ -17,7 +18,8 @@ static uint32_t indices[3 * TRIANGLES], material[TRIANGLES];
 static model_material materials[2];
 
 static model box(double size) {
-    static const int face[FACES][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 4, 5, 1}};
+    static const int face[FACES][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3},
+                                       {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 4, 5, 1}};
     for (uint32_t f = 0; f < FACES; f++) {
         static const uint32_t two[6] = {0, 1, 2, 0, 2, 3};
         for (uint32_t k = 0; k < 4; k++) {
@@ -34,7 +36,13 @@ static model box(double size) {
     memset(materials, 0, sizeof materials);
     materials[0].kind = VIT_GLASS;
     memcpy(before, position, sizeof before);
-    return (model){.position = position, .vertices = VERTICES, .index = indices, .material = material, .triangles = TRIANGLES, .materials = materials, .material_count = 2};
+    return (model){.position = position,
+                   .vertices = VERTICES,
+                   .index = indices,
+                   .material = material,
+                   .triangles = TRIANGLES,
+                   .materials = materials,
+                   .material_count = 2};
 }
 
 static void normal_of(const float *p, uint32_t triangle, double n[3]) {
@@ -107,8 +115,9 @@ static void what_is_no_glass_does_not_move(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_face_of_a_box_moves_in_by_the_gap), cmocka_unit_test(a_closed_body_stays_closed),
-                                       cmocka_unit_test(small_triangles_keep_their_way_round), cmocka_unit_test(needles_keep_their_way_round),
-                                       cmocka_unit_test(what_is_no_glass_does_not_move)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_face_of_a_box_moves_in_by_the_gap), cmocka_unit_test(a_closed_body_stays_closed),
+        cmocka_unit_test(small_triangles_keep_their_way_round), cmocka_unit_test(needles_keep_their_way_round),
+        cmocka_unit_test(what_is_no_glass_does_not_move)};
     return cmocka_run_group_tests_name("glass gap", tests, NULL, NULL);
 }

@@ -580,8 +580,7 @@ static void triangles_without_area_are_dropped_and_counted(void **state) {
 static void triangles_that_are_not_finite_are_dropped_with_one_warning(void **state) {
     model m;
     (void)state;
-    put(FILE_OF("nan.obj"),
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv nan 0 0\nv 0 inf 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
+    put(FILE_OF("nan.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv nan 0 0\nv 0 inf 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n");
     import_good(FILE_OF("nan.obj"), &m);
     assert_true(m.triangles == 1 && m.not_finite == 2 && m.warnings == 1 && m.hi[0] == 1.0);
     assert_non_null(strstr(last_warning, "nan.obj: 2 triangles"));
@@ -591,10 +590,12 @@ static void triangles_that_are_not_finite_are_dropped_with_one_warning(void **st
 static void triangles_that_go_too_far_out_are_dropped_with_one_warning(void **state) {
     model m;
     (void)state;
-    put(FILE_OF("far.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 -1e30 0\nv 2e9 0 0\nv 1e9 0 0\nf 1 2 3\nf 1 2 4\nf 1 3 5\nf 1 3 6\n");
+    put(FILE_OF("far.obj"),
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 -1e30 0\nv 2e9 0 0\nv 1e9 0 0\nf 1 2 3\nf 1 2 4\nf 1 3 5\nf 1 3 6\n");
     import_good(FILE_OF("far.obj"), &m);
     assert_true(m.triangles == 2 && m.not_finite == 0 && m.warnings == 1 && m.lo[1] == 0.0 && m.hi[0] == 1e9);
-    assert_non_null(strstr(last_warning, "far.obj: 2 triangles with a vertex farther out than 1e+09 m dropped, one at 1e+30 m"));
+    assert_non_null(
+        strstr(last_warning, "far.obj: 2 triangles with a vertex farther out than 1e+09 m dropped, one at 1e+30 m"));
     model_free(&m);
     put(FILE_OF("far.obj"), "v 0 0 0\nv 1 0 0\nv 1e30 1 0\nf 1 2 3\n");
     refuse(FILE_OF("far.obj"), false, "has no triangle nearer than 1e+09 m: a vertex is at 1e+30 m");
@@ -665,9 +666,9 @@ static void a_camera_stands_where_its_node_is(void **state) {
 static void an_orthographic_camera_is_warned_of(void **state) {
     model m;
     (void)state;
-    put_gltf("",
-             "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Cam\",\"camera\":0}],\"cameras\":[{\"type\":\"orthographic\","
-             "\"orthographic\":{\"xmag\":2,\"ymag\":1,\"znear\":0.1,\"zfar\":10}}]," MATERIAL(BASE("")));
+    put_gltf("", "\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Cam\",\"camera\":0}],"
+                 "\"cameras\":[{\"type\":\"orthographic\","
+                 "\"orthographic\":{\"xmag\":2,\"ymag\":1,\"znear\":0.1,\"zfar\":10}}]," MATERIAL(BASE("")));
     import_good(FILE_OF("quad.gltf"), &m);
     assert_true(m.camera_count == 1 && m.cameras[0].fov == 0.0 && m.warnings == 1);
     assert_non_null(strstr(last_warning, "camera 'Cam' is orthographic"));
@@ -677,14 +678,20 @@ static void an_orthographic_camera_is_warned_of(void **state) {
 static void lights_have_their_power_cone_and_range(void **state) {
     model m;
     (void)state;
-#define LIT_NODE(name, more, light) "{\"name\":\"" name "\"," more "\"extensions\":{\"KHR_lights_punctual\":{\"light\":" light "}}}"
+#define LIT_NODE(name, more, light)                                                                                            \
+    "{\"name\":\"" name "\"," more "\"extensions\":{\"KHR_lights_punctual\":{\"light\":" light "}}}"
+    /* clang-format off */
     put_gltf("",
-             LIGHTS("{\"type\":\"point\",\"color\":[1,0.5,0.25],\"intensity\":8},{\"type\":\"spot\",\"intensity\":1,\"range\":6,"
-                    "\"spot\":{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}},{\"type\":\"directional\",\"color\":[1,0.5,0.25],"
-                    "\"intensity\":3}") "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"mesh\":0}," LIT_NODE(
-                 "Bulb", "\"translation\":[0,2,0],", "0") "," LIT_NODE("Spot", "\"rotation\":[-0.70710678,0,0,0.70710678],",
-                                                                       "1") "," LIT_NODE("Sun", "\"rotation\":[-0.70710678,0,0,0.70710678],",
-                                                                                         "2") "]," MATERIAL(BASE("")));
+             LIGHTS("{\"type\":\"point\",\"color\":[1,0.5,0.25],\"intensity\":8},"
+                    "{\"type\":\"spot\",\"intensity\":1,\"range\":6,"
+                    "\"spot\":{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}},"
+                    "{\"type\":\"directional\",\"color\":[1,0.5,0.25],\"intensity\":3}")
+             "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"mesh\":0},"
+             LIT_NODE("Bulb", "\"translation\":[0,2,0],", "0") ","
+             LIT_NODE("Spot", "\"rotation\":[-0.70710678,0,0,0.70710678],", "1") ","
+             LIT_NODE("Sun", "\"rotation\":[-0.70710678,0,0,0.70710678],", "2") "],"
+             MATERIAL(BASE("")));
+    /* clang-format on */
     import_good(FILE_OF("quad.gltf"), &m);
     assert_true(m.light_count == 3 && m.warnings == 0);
     const model_light *bulb = &m.lights[0], *spot = &m.lights[1], *sun = &m.lights[2];
@@ -695,7 +702,8 @@ static void lights_have_their_power_cone_and_range(void **state) {
     assert_true(spot->kind == VIT_LIGHT_SPOT && spot->range == 6.0 && fabs(spot->direction[1] + 1.0) < 1e-6);
     assert_true(fabs(spot->inner - 14.3239449) < 1e-4 && fabs(spot->outer - 28.6478898) < 1e-4);
     assert_true(sun->kind == VIT_LIGHT_DIRECTIONAL && sun->range == 0.0 && fabs(sun->direction[1] + 1.0) < 1e-6);
-    assert_true(fabs(sun->power[0] - 3.0 * lux) < 1e-9 && fabs(sun->power[1] - 1.5 * lux) < 1e-9 && fabs(sun->power[2] - 0.75 * lux) < 1e-9);
+    assert_true(fabs(sun->power[0] - 3.0 * lux) < 1e-9 && fabs(sun->power[1] - 1.5 * lux) < 1e-9 &&
+                fabs(sun->power[2] - 0.75 * lux) < 1e-9);
     model_free(&m);
 }
 
@@ -703,11 +711,16 @@ static void lights_have_their_power_cone_and_range(void **state) {
 static void lights_and_cameras_answer_to_the_node_above(void **state) {
     model m;
     (void)state;
+    /* clang-format off */
     put_gltf("",
              LIGHTS("{\"type\":\"point\"},{\"type\":\"point\",\"intensity\":2}")
-             "\"scenes\":[{\"nodes\":[0,1,3,5]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"children\":[2]}," LIT_NODE("Lamp_Orientation", "", "0")
-             ",{\"name\":\"Eye\",\"children\":[4]},{\"name\":\"Eye_Orientation\",\"camera\":0}," LIT_NODE("Other", "", "1")
-             "],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1.0,\"znear\":0.1}}]," MATERIAL(BASE("")));
+             "\"scenes\":[{\"nodes\":[0,1,3,5]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"children\":[2]},"
+             LIT_NODE("Lamp_Orientation", "", "0")
+             ",{\"name\":\"Eye\",\"children\":[4]},{\"name\":\"Eye_Orientation\",\"camera\":0},"
+             LIT_NODE("Other", "", "1")
+             "],\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":1.0,\"znear\":0.1}}],"
+             MATERIAL(BASE("")));
+    /* clang-format on */
     import_good(FILE_OF("quad.gltf"), &m);
     assert_true(m.light_count == 2 && m.camera_count == 1);
     assert_ptr_equal(model_light_named(&m, "Lamp"), model_light_named(&m, "Lamp_Orientation"));
@@ -772,7 +785,8 @@ static void files_of_no_known_kind_are_refused(void **state) {
 
 /* Assimp 5.2.5 would read these for ever. */
 #define PLY_QUADS(faces)                                                                                                       \
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"             \
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"                          \
+    "element face 2\n"                                                                                                         \
     "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n" faces
 
 static void a_polygon_with_a_bad_index_is_dropped_with_a_warning(void **state) {

@@ -22,7 +22,7 @@ static const char *const loose_calls[] = {
     "asinpi",    "acos",   "acosh",      "acospi",  "atan",    "atanh",     "atanpi", "atan2",    "atan2pi",  "exp",
     "exp2",      "exp10",  "expm1",      "log",     "log2",    "log10",     "log1p",  "logb",     "pow",      "pown",
     "powr",      "rootn",  "cbrt",       "hypot",   "erf",     "erfc",      "tgamma", "lgamma",   "lgamma_r", "fmod",
-    "remainder", "remquo", "smoothstep", "radians", "degrees", "fract",   "sqrt"}; /* vit_sqrt, l_sqrt */
+    "remainder", "remquo", "smoothstep", "radians", "degrees", "fract",     "sqrt"}; /* vit_sqrt, l_sqrt */
 
 /* Words, refused anywhere. Exchanges give what another work-item happened to leave; atomics on floats are made of them. */
 static const char *const words[] = {"double",      "sampler_t",      "printf",     "cl_khr_fp64", "cl_khr_int64_base_atomics",

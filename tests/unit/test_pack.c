@@ -32,8 +32,8 @@ static void the_bytes_that_were_written_are_the_bytes_that_are_read(void **state
     vit_pack pack;
     vit_text why = {""};
     assert_int_equal(vit_pack_read(im.bytes, im.size, &pack, &why), VIT_OK);
-    const void *written[VIT_SECTION_COUNT] = {&f.scene,    f.cameras,  f.lights, f.triangles, f.attributes, f.nodes,
-                                              f.materials, f.textures, f.mips,   f.texels,    f.sides,      f.cells,
+    const void *written[VIT_SECTION_COUNT] = {&f.scene,    f.cameras,  f.lights,  f.triangles, f.attributes, f.nodes,
+                                              f.materials, f.textures, f.mips,    f.texels,    f.sides,      f.cells,
                                               f.emitters,  f.sky,      f.photons, f.golds};
     for (int i = 0; i < VIT_SECTION_COUNT; i++)
         assert_memory_equal(pack.section[i], written[i], pack.bytes[i]);

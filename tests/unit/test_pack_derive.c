@@ -125,13 +125,12 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
         const char *name;
         size_t offset;
         vit_u32 least, most;
-    } limits[] = {LIMIT(width, 1, 7680),          LIMIT(height, 1, 4320),     LIMIT(frames, 1, 100000),
-                  LIMIT(triangles, 300, 1 << 27), LIMIT(nodes, 1, 1000),      LIMIT(materials, 1, 1 << 24),
-                  LIMIT(textures, 0, 65536),      LIMIT(mips, 0, 65536 * 15), LIMIT(texels, 0, 0x7fffffff),
-                  LIMIT(lights, 0, 64),           LIMIT(paths, 0, 1000000),   LIMIT(bounces, 1, 32),
-                  LIMIT(slice_count, 1, 4096),    LIMIT(tile, 8, 64),         LIMIT(chain, 0, 32),
-                  LIMIT(area_samples, 0, 1024),   LIMIT(sky_samples, 0, 1024), LIMIT(sky_size, 0, 2048),
-                  LIMIT(copies, 1, 16)};
+    } limits[] = {
+        LIMIT(width, 1, 7680),        LIMIT(height, 1, 4320),       LIMIT(frames, 1, 100000),  LIMIT(triangles, 300, 1 << 27),
+        LIMIT(nodes, 1, 1000),        LIMIT(materials, 1, 1 << 24), LIMIT(textures, 0, 65536), LIMIT(mips, 0, 65536 * 15),
+        LIMIT(texels, 0, 0x7fffffff), LIMIT(lights, 0, 64),         LIMIT(paths, 0, 1000000),  LIMIT(bounces, 1, 32),
+        LIMIT(slice_count, 1, 4096),  LIMIT(tile, 8, 64),           LIMIT(chain, 0, 32),       LIMIT(area_samples, 0, 1024),
+        LIMIT(sky_samples, 0, 1024),  LIMIT(sky_size, 0, 2048),     LIMIT(copies, 1, 16)};
 #undef LIMIT
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
         for (int k = 0; k < 4; k++) {

@@ -81,7 +81,8 @@
     X(META, sky_too_large, "sky_size", im->scene->sky_size = 2049)                                                             \
     X(META, no_sky_with_the_effect, "SKY_IMAGE without a sky", im->scene->sky_size = 0)                                        \
     X(META, caustics_without_photons, "without", EFFECTS(0, BIT(PHOTONS) | BIT(TRACED)))                                       \
-    X(META, directional_without_lights, "DIRECTIONAL without LIGHTS", EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))\
+    X(META, directional_without_lights, "DIRECTIONAL without LIGHTS",                                                          \
+      EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))                                           \
     X(META, reserved_words_in_use, "padding", im->scene->pad[4] = 1)                                                           \
     X(EMIT, position_is_nan, "point 3: position", im->emitters[3].position[1] = NAN)                                           \
     X(EMIT, normal_too_short, "point 0: position is not finite, or normal", im->emitters[0].normal[1] = -0.5f)                 \
@@ -99,10 +100,11 @@
     X(MATL, ior_below_1, "ior", im->materials[0].ior = 0.5f)                                                                   \
     X(MATL, negative_absorption, "absorption", im->materials[0].absorption[2] = -1)                                            \
     X(MATL, lights_of_2, "lights must be 0 or 1", im->materials[0].lights = 2)                                                 \
-    X(MATL, rays_for_what_does_not_shine, "near2", im->materials[1].near2 = 1)                                                  \
-    X(MATL, padding_in_use, "padding", im->materials[1].pad = 7)                                                            \
+    X(MATL, rays_for_what_does_not_shine, "near2", im->materials[1].near2 = 1)                                                 \
+    X(MATL, padding_in_use, "padding", im->materials[1].pad = 7)                                                               \
     X(LITE, directional_without_its_effect, "without the effect DIRECTIONAL", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL)      \
-    X(LITE, directional_with_a_range, "directional light with a range", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL, EFFECTS(BIT(DIRECTIONAL), 0))\
+    X(LITE, directional_with_a_range, "directional light with a range", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL,            \
+      EFFECTS(BIT(DIRECTIONAL), 0))                                                                                            \
     X(META, no_slices, "slice_count", im->scene->slice_count = 0)                                                              \
     X(META, huge_slices, "slice_count", im->scene->slice_count = 4097)                                                         \
     X(META, too_many_key_bits, "key_bits", im->scene->slice_count = 4096, im->scene->width = 7680, im->scene->height = 4320,   \
@@ -127,7 +129,7 @@
     X(META, slice_near_of_0, "slice_near", im->scene->slice_near = 0)                                                          \
     X(META, negative_slice_scale, "slice_scale", im->scene->slice_scale = -2)                                                  \
     X(META, infinite_background, "background green", im->scene->background[1] = INFINITY)                                      \
-    X(META, unknown_effect, "unknown effects 0x8000000000000000", EFFECTS((vit_u64)1 << 63, 0))                                             \
+    X(META, unknown_effect, "unknown effects 0x8000000000000000", EFFECTS((vit_u64)1 << 63, 0))                                \
     X(META, list_and_buckets, "exclude", EFFECTS(BIT(BUCKETS), 0))                                                             \
     X(META, neither_list_nor_buckets, "without LIST or BUCKETS", EFFECTS(0, BIT(LIST)))                                        \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
@@ -145,7 +147,7 @@
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
     X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu), im->scene->paths = im->scene->baked = 0,           \
       vit_pack_derive(im->scene, NULL))                                                                                        \
-    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),                     \
+    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),                \
       im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \
@@ -171,7 +173,7 @@
     X(META, background_near_the_largest_float, "background", im->scene->background[1] = 1e38f)                                 \
     X(CAMS, exposure_near_the_largest_float, "exposure", im->cameras[0].exposure = 1e38f)                                      \
     X(LITE, intensity_near_the_largest_float, "intensity", im->lights[1].intensity[2] = 1e38f)                                 \
-    X(LITE, photons_that_would_be_infinite, "power over the square", im->scene->radius = 1e-14f, bright(im))                  \
+    X(LITE, photons_that_would_be_infinite, "power over the square", im->scene->radius = 1e-14f, bright(im))                   \
     X(MATL, emission_near_the_largest_float, "emission", im->materials[0].emission[0] = 1e38f)                                 \
     X(PHOT, power_near_the_largest_float, "power", im->photons[0].power[1] = 1e38f)                                            \
     X(CAMS, negative_exposure, "exposure", im->cameras[0].exposure = -1)                                                       \
@@ -191,7 +193,7 @@
     X(LITE, paths_of_half_a_packet, "multiples of 16", im->lights[0].path_count = 8)                                           \
     X(LITE, path_sum_that_wraps, "beyond", im->lights[1].path_first = 0xfffffff0, im->lights[1].path_count = 32)               \
     X(LITE, paths_change_with_the_frame, "frame 1, light 1: paths differ", im->lights[3].path_count = 16)                      \
-    X(LITE, paths_shared, "lights 0 and 1 share", im->lights[0].path_count = im->lights[2].path_count = 16)                     \
+    X(LITE, paths_shared, "lights 0 and 1 share", im->lights[0].path_count = im->lights[2].path_count = 16)                    \
     X(LITE, paths_of_no_light, "16 photon paths", im->lights[1].path_count = im->lights[3].path_count = 16)                    \
     X(GEOM, vertex_is_nan, "triangle 11: vertex is not finite", im->triangles[11].v2[2] = NAN)                                 \
     X(GEOM, vertex_is_infinite, "triangle 0: vertex is not finite", im->triangles[0].v0[0] = INFINITY)                         \
@@ -227,7 +229,7 @@
     X(PHOT, inverse_is_infinite, "photon 0: position, direction or radius", im->photons[0].inv_radius2 = INFINITY)             \
     X(PHOT, negative_power, "power", im->photons[0].power[1] = -1)                                                             \
     X(PHOT, wrong_inverse, "inv_radius2", im->photons[1].inv_radius2 = 4.001f)                                                 \
-    X(PHOT, radius_of_0, "inv_radius2", im->photons[1].radius2 = 0, im->photons[1].zone = 0)                                    \
+    X(PHOT, radius_of_0, "inv_radius2", im->photons[1].radius2 = 0, im->photons[1].zone = 0)                                   \
     X(PHOT, direction_too_short, "unit vector", im->photons[0].direction[1] = -0.5f)                                           \
     X(PHOT, empty_slot_with_power, "photon 3: an empty slot has power", im->photons[3].power[2] = 1)                           \
     X(PHOT, two_zones, "photon 0: zone", im->photons[0].zone = 3)                                                              \
@@ -282,10 +284,10 @@
     X(forward_a_little_short, im->cameras[0].forward[2] = -0.9995f)                                                            \
     X(dark_light, im->lights[0].intensity[0] = 0)                                                                              \
     X(unlimited_light_without_the_effect, im->lights[0].inv_range2 = im->lights[2].inv_range2 = 0, EFFECTS(0, BIT(RANGE)))     \
-    X(paths_side_by_side, share_paths(im, 0, 16))                                                                               \
-    X(paths_in_reverse, share_paths(im, 16, 0))                                                                                 \
-    X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 16)                                            \
-    X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK | VIT_TRIANGLE_SMOOTH)                                       \
+    X(paths_side_by_side, share_paths(im, 0, 16))                                                                              \
+    X(paths_in_reverse, share_paths(im, 16, 0))                                                                                \
+    X(no_paths_amid_paths, im->lights[0].path_first = im->lights[2].path_first = 16)                                           \
+    X(all_flags, im->attributes[0].material |= VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK | VIT_TRIANGLE_SMOOTH)                 \
     X(cut_out_by_a_texture, im->materials[1].cutout = 1, EFFECTS(BIT(CUTOUT), 0))                                              \
     X(most_emission, im->materials[0].emission[0] = VIT_MAX_RADIANCE)                                                          \
     X(most_intensity, im->lights[0].intensity[0] = VIT_MAX_INTENSITY)                                                          \

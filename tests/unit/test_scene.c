@@ -144,12 +144,14 @@ static void every_setting_of_a_light_is_read(void **state) {
     read_good(full, &s);
     assert_int_equal(s.light_count, 3);
     const scene_light *l = s.lights;
-    assert_true(l[0].kind == VIT_LIGHT_POINT && l[0].range == 0.0 && !l[0].window && l[0].photons && l[0].key_count == 2 && l[0].line == 9);
+    assert_true(l[0].kind == VIT_LIGHT_POINT && l[0].range == 0.0 && !l[0].window && l[0].photons && l[0].key_count == 2 &&
+                l[0].line == 9);
     assert_true(l[0].keys[0].time == 0.0 && l[0].keys[1].time == 1.0);
     near3(l[0].keys[0].power, 100, 90, 80.5);
     near3(l[0].keys[1].power, 0, 0, 0);
     near3(l[0].keys[1].position, 0, 2, 0);
-    assert_true(l[1].kind == VIT_LIGHT_SPOT && l[1].inner == 20.0 && l[1].outer == 40.0 && l[1].range == 6.0 && l[1].window && !l[1].photons);
+    assert_true(l[1].kind == VIT_LIGHT_SPOT && l[1].inner == 20.0 && l[1].outer == 40.0 && l[1].range == 6.0 && l[1].window &&
+                !l[1].photons);
     assert_true(l[1].key_count == 1 && l[1].keys[0].time == 0.25);
     near3(l[1].keys[0].target, 1, 0, 0);
     assert_string_equal(l[2].use, "Lamp");
@@ -291,7 +293,6 @@ static void what_an_include_holds_is_looked_at_too(void **state) {
     refuse(GOOD "\n@include \"lost.cfg\"\n", 4, "lost.cfg' is not there");
 }
 
-
 REFUSES(an_empty_file_is_refused, 0, "'meshes'", "")
 REFUSES(a_scene_without_meshes_is_refused, 0, "'meshes'", CAMERA)
 REFUSES(an_empty_list_of_meshes_is_refused, 1, "at least one mesh", "meshes = ( );\n" CAMERA)
@@ -309,8 +310,10 @@ REFUSES(text_that_is_no_scene_is_refused, 3, "syntax error", GOOD "hello, world\
 REFUSES(a_width_of_0_is_refused, 3, "'width' must be in [1, 7680], got 0", GOOD "output: { width = 0; };\n")
 REFUSES(a_height_of_4321_is_refused, 3, "'height' must be in [1, 4320], got 4321", GOOD "output: { height = 4321; };\n")
 REFUSES(a_width_beyond_32_bits_is_refused, 3, "'width'", GOOD "output: { width = 4294967297L; };\n")
-REFUSES(a_width_that_32_bits_would_wrap_is_refused, 3, "'4294967456' is beyond 32 bits", GOOD "output: { width = 4294967456; };\n")
-REFUSES(a_width_that_64_bits_would_wrap_is_refused, 3, "is beyond 64 bits", GOOD "output: { width = 18446744073709551776L; };\n")
+REFUSES(a_width_that_32_bits_would_wrap_is_refused, 3, "'4294967456' is beyond 32 bits",
+        GOOD "output: { width = 4294967456; };\n")
+REFUSES(a_width_that_64_bits_would_wrap_is_refused, 3, "is beyond 64 bits",
+        GOOD "output: { width = 18446744073709551776L; };\n")
 REFUSES(a_negative_number_beyond_32_bits_is_refused, 4, "'-2147483649' is beyond", GOOD "output: {\nwidth = -2147483649; };\n")
 REFUSES(frames_beyond_32_bits_are_refused, 3, "'4294967298' is beyond", GOOD "output: { frames=4294967298; };\n")
 REFUSES(a_vector_beyond_32_bits_is_refused, 3, "'4294967297' is beyond", GOOD "background = (0, 0, 4294967297);\n")
@@ -319,7 +322,8 @@ REFUSES(an_octal_number_of_64_bits_is_refused, 3, "'+010L' begins with 0", GOOD 
 REFUSES(a_hexadecimal_number_is_refused, 3, "'0x10' numbers are decimal", GOOD "output: { frames = 0x10; };\n")
 REFUSES(a_binary_number_is_refused, 3, "'0b10' numbers are decimal", GOOD "output: { frames = 0b10; };\n")
 REFUSES(a_choice_beyond_32_bits_is_refused, 3, "'indirect_samples'", GOOD "quality: { indirect_samples = 4294967300L; };\n")
-REFUSES(a_comma_behind_the_last_light_is_refused, 4, "',' has nothing behind it", GOOD "lights = ( { type = \"point\"; " KEYS "}\n, // last\n/* ) */ );\n")
+REFUSES(a_comma_behind_the_last_light_is_refused, 4, "',' has nothing behind it",
+        GOOD "lights = ( { type = \"point\"; " KEYS "}\n, // last\n/* ) */ );\n")
 REFUSES(a_comma_behind_the_last_number_is_refused, 3, "',' has nothing behind it", GOOD "background = [0.0, 0.0, 0.0,];\n")
 REFUSES(utf_16_is_refused, 1, "UTF-8", "\xff\xfem")
 REFUSES(a_width_that_is_no_whole_number_is_refused, 3, "whole number", GOOD "output: { width = 640.5; };\n")

@@ -315,7 +315,8 @@ static void a_spot_light_that_meets_its_target_is_refused(void **state) {
     setting x;
     (void)state;
     set(&x, 21);
-    add_light(&x, (scene_light){.kind = VIT_LIGHT_SPOT, .outer = 45.0}, (scene_light_key){.position = {0, 1, 0}, .power = {1, 1, 1}});
+    add_light(&x, (scene_light){.kind = VIT_LIGHT_SPOT, .outer = 45.0},
+              (scene_light_key){.position = {0, 1, 0}, .power = {1, 1, 1}});
     x.keys[0][1] = (scene_light_key){.time = 2.0, .position = {0, -1, 0}, .power = {1, 1, 1}};
     x.lights[0].key_count = 2;
     refuse(&x, "test.cfg:10: light 1: 'position' and 'target' meet in frame 10");

@@ -54,7 +54,8 @@ static vit_status make_shape(bake *k, vit_text *why) {
         status = reach_dark_sides(&k->m, &k->t, 1, false, &k->g, 1, NULL, NULL, &k->r, why);
     if (status == VIT_OK)
         status = atlas_pack(&k->m, &k->a, why);
-    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const sky){0}, 1, &k->p, why) : status;
+    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const sky){0}, 1, &k->p, why)
+                            : status;
 }
 
 static vit_status make_photons(bake *k, vit_text *why) {
@@ -175,8 +176,7 @@ static void bake_model(bake *k) {
     if (status == VIT_OK) {
         make_emitters(k);
         check_pack(k);
-    }
-    else
+    } else
         fuzz_one_line(why.text, sizeof why.text);
     bake_free(k);
 }

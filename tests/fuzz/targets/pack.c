@@ -123,10 +123,9 @@ static void *resized(const void *from, uint64_t have, uint64_t want) {
 
 /* Sections by the edited META, or as they were. */
 static bool fill_sections(const script *sc, const pack_fixture *f, forged *out) {
-    const void *from[VIT_SECTION_COUNT] = {&f->scene, f->cameras,   f->lights,   f->triangles, f->attributes,
-                                           f->nodes,  f->materials, f->textures, f->mips,      f->texels,
-                                           f->sides,  f->cells,     f->emitters, f->sky,       f->photons,
-                                           f->golds};
+    const void *from[VIT_SECTION_COUNT] = {&f->scene,    f->cameras,  f->lights,  f->triangles, f->attributes, f->nodes,
+                                           f->materials, f->textures, f->mips,    f->texels,    f->sides,      f->cells,
+                                           f->emitters,  f->sky,      f->photons, f->golds};
     uint64_t have[VIT_SECTION_COUNT], want[VIT_SECTION_COUNT];
     vit_scene s = f->scene;
     apply(sc, VIT_SECTION_META, &s, sizeof s);
