@@ -9,7 +9,7 @@ prefix ?= /usr/local
 
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Werror
 # Same bits on every host too: no contraction, no reassociation, and no vectors that the compiler joins of scalars by itself, of which GCC 12.2
-# makes other bits in bake/glass_gap.c (kernels as C: HOST_FLAGS).
+# makes other bits in bake/geometry/glass_inset.c (kernels as C: HOST_FLAGS).
 BASE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -DCL_TARGET_OPENCL_VERSION=120 -DVIT_OPENCL=$(OPENCL) -pthread -ffp-contract=off -fno-tree-slp-vectorize -MMD -MP -Iinclude
 ifeq ($(config),release)
 OPT := -O2 -g
@@ -36,21 +36,20 @@ KERNELS := ../include/vitrine_frame.h records.clh strict.clh lanes.clh work.clh 
 
 RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)
-BAKE := $(wildcard bake/*.c)
-COST := $(wildcard bake/cost/*.c)
-COST_PARTS := $(filter-out bake/cost/main.c,$(COST))
+BAKE := $(filter-out bake/scenes/%,$(wildcard bake/*.c bake/*/*.c))
 SCENES := $(wildcard bake/scenes/*.c)
 TESTS := $(wildcard tests/unit/*.c tests/golden/*.c tests/numeric/*.c tests/fuzz/*.c)
 BENCH := $(wildcard tests/bench/*.c)
 
 obj = $(patsubst %.c,$(B)/%.o,$(1))
-# All of vitrine-cost but its main.
-COST_OBJECTS := $(call obj,$(COST_PARTS)) $(B)/report_files.o
+# All of vitrine-bake and vitrine-cost but their mains.
+BAKE_PARTS := $(filter-out bake/main.c bake/cost/main.c,$(BAKE))
+BAKE_OBJECTS := $(call obj,$(BAKE_PARTS)) $(B)/report_files.o
 # Libraries. Embree 3 or 4, whichever is installed.
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
 LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
-# Open MPI, if it is installed, spreads references over machines (bake/cost/spread.h).
+# Open MPI, if it is installed, spreads references over machines (bake/reference/spread.h).
 LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
 LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
 
@@ -106,11 +105,11 @@ $(B)/runtime/host/programs.o: CFLAGS_ALL += -I$(B)
 $(B)/runtime/host/programs.o: $(B)/host_programs.h
 
 # The report's style sheet and script as C strings.
-$(B)/report_files.c: bake/cost/report.css bake/cost/report.js Makefile
+$(B)/report_files.c: bake/report/report.css bake/report/report.js Makefile
 	@mkdir -p $(@D)
-	@set -e; { echo '/* Made from bake/cost/ by the Makefile. */'; \
+	@set -e; { echo '/* Made from bake/report/ by the Makefile. */'; \
 	   for f in css js; do echo "extern const char report_$$f[];"; echo "const char report_$$f[] ="; \
-	     sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' bake/cost/report.$$f; echo ';'; done; } > $@
+	     sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/"/' -e 's/$$/\\n"/' bake/report/report.$$f; echo ';'; done; } > $@
 
 $(B)/report_files.o: CFLAGS_ALL += -Wno-overlength-strings
 $(B)/report_files.o: $(B)/report_files.c
@@ -118,7 +117,7 @@ $(B)/report_files.o: $(B)/report_files.c
 $(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
 $(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
 ifneq ($(LIBS_COST),)
-$(B)/bake/cost/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
+$(B)/bake/reference/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
 endif
 $(B)/tests/%.o: CFLAGS_ALL += -Ibake -Iruntime -Itests -DVIT_EMBREE=$(EMBREE) -DVIT_BUILD_DIR='"$(B)"'
 $(B)/kernel_sources.o: $(B)/kernel_sources.c
@@ -132,9 +131,9 @@ $(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(HOST_OBJECTS) $(if $(filter 0,$(OPEN
 	$(AR) rcs $@ $^
 $(B)/vitrine-play: $(call obj,$(PLAY)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_PLAY) -o $@
-$(B)/vitrine-bake: $(call obj,$(BAKE)) $(COST_OBJECTS) $(B)/libvitrine.a
+$(B)/vitrine-bake: $(call obj,bake/main.c) $(BAKE_OBJECTS) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
-$(B)/vitrine-cost: $(call obj,$(filter-out bake/main.c,$(BAKE)) bake/cost/main.c) $(COST_OBJECTS) $(B)/libvitrine.a
+$(B)/vitrine-cost: $(call obj,bake/cost/main.c) $(BAKE_OBJECTS) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@

@@ -2,7 +2,7 @@
 #ifndef VIT_BAKE_LIST_H
 #define VIT_BAKE_LIST_H
 
-#include "model.h"
+#include "import/model.h"
 #include <stdio.h>
 
 /* Imports the meshes of `s` and prints meshes, materials, textures, lights, cameras, extensions, and what is not done of what

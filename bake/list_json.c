@@ -1,4 +1,4 @@
-#include "cost/report_parts.h"
+#include "report/report_parts.h"
 #include "list_parts.h"
 #include <inttypes.h>
 

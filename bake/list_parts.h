@@ -2,8 +2,8 @@
 #ifndef VIT_BAKE_LIST_PARTS_H
 #define VIT_BAKE_LIST_PARTS_H
 
-#include "gltf_extensions.h"
-#include "model.h"
+#include "import/gltf_extensions.h"
+#include "import/model.h"
 #include <stdio.h>
 
 typedef struct list_extension {

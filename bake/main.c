@@ -1,12 +1,12 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
-#include "auto.h"
-#include "exposure.h"
-#include "cost/adds.h"
+#include "check/auto.h"
+#include "check/exposure.h"
+#include "cost/effect_cost.h"
 #include "cost/fit_pack.h"
 #include "list.h"
 #include "options.h"
-#include "setting_rows.h"
-#include "pipeline.h"
+#include "scene/setting_rows.h"
+#include "pack/pipeline.h"
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

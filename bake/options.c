@@ -1,8 +1,8 @@
 #include "options.h"
-#include "effects.h"
-#include "fields.h"
-#include "option_text.h"
-#include "setting_rows.h"
+#include "pack/effects.h"
+#include "scene/fields.h"
+#include "common/option_text.h"
+#include "scene/setting_rows.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>

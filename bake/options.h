@@ -2,7 +2,7 @@
 #ifndef VIT_BAKE_OPTIONS_H
 #define VIT_BAKE_OPTIONS_H
 
-#include "scene.h"
+#include "scene/scene.h"
 
 typedef struct options {
     const char *input, *output;

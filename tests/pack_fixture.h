@@ -5,7 +5,7 @@
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
 
-#include "pack_write.h"
+#include "pack/pack_write.h"
 
 #include <string.h>
 

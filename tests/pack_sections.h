@@ -2,7 +2,7 @@
 #ifndef VIT_TESTS_PACK_SECTIONS_H
 #define VIT_TESTS_PACK_SECTIONS_H
 
-#include "pack_write.h"
+#include "pack/pack_write.h"
 
 /* The pack must be a good one: nothing is checked. */
 static inline pack_sections pack_sections_of(const void *pack) {

@@ -4,8 +4,8 @@
 #ifndef VIT_TESTS_PHOTON_ROOM_H
 #define VIT_TESTS_PHOTON_ROOM_H
 
-#include "photons.h"
-#include "bvh.h"
+#include "light/photons.h"
+#include "geometry/bvh.h"
 
 #include <stdarg.h>
 #include <stddef.h>

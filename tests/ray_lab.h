@@ -2,7 +2,7 @@
 #ifndef VIT_TESTS_RAY_LAB_H
 #define VIT_TESTS_RAY_LAB_H
 
-#include "bvh.h"
+#include "geometry/bvh.h"
 #include "kernel_lab.h"
 #include <math.h>
 

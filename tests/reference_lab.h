@@ -3,7 +3,7 @@
 #ifndef VIT_TESTS_REFERENCE_LAB_H
 #define VIT_TESTS_REFERENCE_LAB_H
 
-#include "cost/reference.h"
+#include "reference/reference.h"
 #include "photon_room.h"
 
 #define LAB_PI 3.14159265358979323846

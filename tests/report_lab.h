@@ -3,7 +3,7 @@
 #ifndef VIT_TESTS_REPORT_LAB_H
 #define VIT_TESTS_REPORT_LAB_H
 
-#include "cost/report.h"
+#include "report/report.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

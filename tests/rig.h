@@ -3,8 +3,8 @@
 #ifndef VIT_TESTS_RIG_H
 #define VIT_TESTS_RIG_H
 
-#include "octahedral.h"
-#include "pack_write.h"
+#include "common/octahedral.h"
+#include "pack/pack_write.h"
 #include "ray_lab.h"
 #include "read_buffer.h"
 

@@ -3,7 +3,7 @@
 SMOKE_BENCHES := $(patsubst tests/bench/bench_%.c,smoke-bench/%,$(wildcard tests/bench/bench_*.c))
 # With and without OpenCL; a file of each folder; a reader, the frame and the player of a pack; and each fuzzer for a few seconds.
 SMOKE_NO_OPENCL := config=debug HOST_ISAS=baseline HOST_LANES=8
-SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack_write.c bake/cost/front.c
+SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack/pack_write.c bake/cost/pareto.c
 SMOKE_COVERED := unit/test_pack golden/test_no_allocation
 SMOKE_SECONDS := 5
 SMOKES := $(addprefix smoke-,bench numeric soak no-opencl lint coverage fuzz matrix)

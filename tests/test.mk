@@ -2,7 +2,6 @@
 TEST_PROGRAMS := $(patsubst %.c,$(B)/%,$(TESTS))
 # Sources, or names from the command line: make bench BENCH="rays open".
 BENCH_PROGRAMS := $(foreach b,$(BENCH),$(if $(filter %.c,$(b)),$(patsubst %.c,$(B)/%,$(b)),$(B)/tests/bench/bench_$(b)))
-BAKE_PARTS := $(filter-out bake/main.c,$(BAKE))
 SCENES_MADE := $(B)/scenes/atrium.obj
 
 # Kernel functions as C on plain arrays (tests/host_lab.h), for the catalogue of hard cases.
@@ -21,7 +20,7 @@ $(NUMERIC_PROGRAMS): $(HOST_LAB)
 # Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
-$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
+$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
@@ -43,7 +42,7 @@ $(B)/tests/golden/test_public_header: $(B)/vitrine.pc
 $(B)/tests/unit/test_budget_verdict: $(addprefix $(B)/runtime/play/,budget.o failure.o machine_load.o pacing.o report.o times.o)
 # It casts rays with the tests' laboratory.
 $(B)/tests/bench/bench_octree: private LIBS_COST += -lcmocka
-$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(COST_OBJECTS) $(call obj,$(BAKE_PARTS)) $(B)/libvitrine.a
+$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes

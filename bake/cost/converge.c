@@ -1,6 +1,6 @@
 /* steps, partners -> sweep.c -> pictures, reference -> errors and their parts -> lines. */
-#include "converge.h"
-#include "knobs.h"
+#include "cost/converge.h"
+#include "cost/knobs.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

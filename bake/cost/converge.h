@@ -3,7 +3,7 @@
 #ifndef VIT_COST_CONVERGE_H
 #define VIT_COST_CONVERGE_H
 
-#include "sweep.h"
+#include "cost/sweep.h"
 #include <stdio.h>
 
 #define CONVERGE_LEAST 5

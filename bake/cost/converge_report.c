@@ -1,6 +1,6 @@
 /* converge.csv, converge.svg, and the table. */
-#include "converge.h"
-#include "report_parts.h"
+#include "cost/converge.h"
+#include "report/report_parts.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* One table holds the options: parser and --help are made from it. Adding an option is adding a row. */
-#include "cost_options.h"
-#include "converge.h"
-#include "knobs.h"
-#include "option_text.h"
-#include "sweep.h"
+#include "cost/cost_options.h"
+#include "cost/converge.h"
+#include "cost/knobs.h"
+#include "common/option_text.h"
+#include "cost/sweep.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>

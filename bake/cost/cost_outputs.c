@@ -1,8 +1,8 @@
-#include "cost_outputs.h"
-#include "converge.h"
-#include "knobs.h"
-#include "report.h"
-#include "rewrite.h"
+#include "cost/cost_outputs.h"
+#include "cost/converge.h"
+#include "cost/knobs.h"
+#include "report/report.h"
+#include "cost/rewrite.h"
 #include <stdio.h>
 
 /* File `index` of the folder -o; NULL beyond the last. */

@@ -2,8 +2,8 @@
 #ifndef VIT_COST_OUTPUTS_H
 #define VIT_COST_OUTPUTS_H
 
-#include "cost_options.h"
-#include "pipeline.h"
+#include "cost/cost_options.h"
+#include "pack/pipeline.h"
 
 /* VIT_FAILED: a file of -o, --write or --cache could not be written. VIT_USAGE: there is no such knob or frame. VIT_BAD_INPUT:
  * --write is no scene. */

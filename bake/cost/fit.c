@@ -1,4 +1,4 @@
-#include "fit.h"
+#include "cost/fit.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef VIT_COST_FIT_H
 #define VIT_COST_FIT_H
 
-#include "results.h"
+#include "report/results.h"
 #include <stdio.h>
 
 typedef struct fit_budget {

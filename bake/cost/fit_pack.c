@@ -1,7 +1,7 @@
-#include "fit_pack.h"
-#include "machine.h"
-#include "sweep.h"
-#include "timing.h"
+#include "cost/fit_pack.h"
+#include "cost/machine.h"
+#include "cost/sweep.h"
+#include "cost/timing.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 #ifndef VIT_COST_FIT_PACK_H
 #define VIT_COST_FIT_PACK_H
 
-#include "fit.h"
-#include "pipeline.h"
+#include "cost/fit.h"
+#include "pack/pipeline.h"
 
 /* Sweeps the scene (sweep.h, all knobs), chooses, sets p->scene.quality to the choice and packs all frames. A budget in
  * milliseconds is of `device`, and is then measured on all frames of that pack; should their 95th percentile miss it, the next

@@ -1,5 +1,5 @@
-#include "images.h"
-#include "opened.h"
+#include "cost/images.h"
+#include "pack/opened.h"
 #include <stdbool.h>
 #include <stddef.h>
 

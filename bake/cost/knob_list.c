@@ -1,5 +1,5 @@
 /* Settings made from the table: each knob alone, combinations, and what lies beside a setting. */
-#include "knob_parts.h"
+#include "cost/knob_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

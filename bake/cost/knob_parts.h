@@ -2,7 +2,7 @@
 #ifndef VIT_COST_KNOB_PARTS_H
 #define VIT_COST_KNOB_PARTS_H
 
-#include "knobs.h"
+#include "cost/knobs.h"
 
 #define MOST_TRIED 16
 

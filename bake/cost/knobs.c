@@ -1,7 +1,7 @@
 /* What can be turned, and what it can be set to for the scene at hand. */
-#include "knob_parts.h"
-#include "planner.h"
-#include "setting_rows.h"
+#include "cost/knob_parts.h"
+#include "pack/planner.h"
+#include "scene/setting_rows.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 #ifndef VIT_COST_KNOBS_H
 #define VIT_COST_KNOBS_H
 
-#include "results.h"
-#include "scene.h"
+#include "report/results.h"
+#include "scene/scene.h"
 
 #define KNOBS_MOST 32
 

@@ -1,4 +1,4 @@
-#include "machine.h"
+#include "cost/machine.h"
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,14 +1,14 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
-#include "exposure.h"
-#include "converge.h"
-#include "cost_options.h"
-#include "cost_outputs.h"
-#include "fit.h"
-#include "machine.h"
-#include "report.h"
-#include "rewrite.h"
-#include "spread.h"
-#include "sweep.h"
+#include "check/exposure.h"
+#include "cost/converge.h"
+#include "cost/cost_options.h"
+#include "cost/cost_outputs.h"
+#include "cost/fit.h"
+#include "cost/machine.h"
+#include "report/report.h"
+#include "cost/rewrite.h"
+#include "reference/spread.h"
+#include "cost/sweep.h"
 #include <stdio.h>
 #include <string.h>
 

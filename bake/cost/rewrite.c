@@ -1,6 +1,6 @@
-#include "rewrite.h"
-#include "pack_write.h"
-#include "scene.h"
+#include "cost/rewrite.h"
+#include "pack/pack_write.h"
+#include "scene/scene.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 /* default pack -> reference -> settings -> pictures, work -> errors, a better reference if need be -> times -> front. */
-#include "sweep_parts.h"
-#include "front.h"
-#include "machine.h"
-#include "spread.h"
+#include "cost/sweep_parts.h"
+#include "cost/pareto.h"
+#include "cost/machine.h"
+#include "reference/spread.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef VIT_COST_SWEEP_H
 #define VIT_COST_SWEEP_H
 
-#include "pipeline.h"
-#include "results.h"
+#include "pack/pipeline.h"
+#include "report/results.h"
 #include <signal.h>
 
 #define SWEEP_FRAMES 7    /* frames of the path that are played, evenly spread, the compared one among them */

@@ -1,6 +1,6 @@
 /* Direct light of the compared frame. Settings that differ in photons alone share it, and few kernels need to be compiled for
  * it. */
-#include "sweep_parts.h"
+#include "cost/sweep_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

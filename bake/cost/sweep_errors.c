@@ -1,5 +1,5 @@
 /* Errors of all settings against the reference. */
-#include "sweep_parts.h"
+#include "cost/sweep_parts.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* What must be timed to find the most accurate setting within so many milliseconds. Errors and work are known and exact; work
  * foretells times up to a factor (README.md, "Fit"), so what is wrong by more than a setting that fits, or would take far too
  * long, need not be timed, nor need its kernels be compiled. */
-#include "sweep_parts.h"
+#include "cost/sweep_parts.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

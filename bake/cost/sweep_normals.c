@@ -1,6 +1,6 @@
 /* What it does to the picture that photons are counted per area of triangles, while a smooth surface's irradiance is about its
  * shading normal: two references. */
-#include "sweep_parts.h"
+#include "cost/sweep_parts.h"
 #include <math.h>
 
 #define FLAT 0.99999 /* least cosine between a flat triangle's normal and its vertices': normals are stored in 16 bits */

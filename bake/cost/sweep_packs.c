@@ -1,6 +1,6 @@
 /* Packs, pictures and exact work of the settings. */
-#include "fit.h"
-#include "sweep_parts.h"
+#include "cost/fit.h"
+#include "cost/sweep_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

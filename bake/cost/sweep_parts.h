@@ -2,9 +2,9 @@
 #ifndef VIT_COST_SWEEP_PARTS_H
 #define VIT_COST_SWEEP_PARTS_H
 
-#include "images.h"
-#include "knobs.h"
-#include "sweep.h"
+#include "cost/images.h"
+#include "cost/knobs.h"
+#include "cost/sweep.h"
 
 /* A setting's pack; bytes NULL: not kept, to be made again. */
 typedef struct sweep_pack {

@@ -1,5 +1,5 @@
 /* Which settings are tried. Errors and work are exact, so that every machine tries the same ones. */
-#include "sweep_parts.h"
+#include "cost/sweep_parts.h"
 #include <stdlib.h>
 #include <string.h>
 

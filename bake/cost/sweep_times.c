@@ -1,6 +1,6 @@
 /* Times of all settings: in turns, as many open at once as the memory allows, the default in every batch. */
-#include "sweep_parts.h"
-#include "timing.h"
+#include "cost/sweep_parts.h"
+#include "cost/timing.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
-#include "timing.h"
-#include "opened.h"
+#include "cost/timing.h"
+#include "pack/opened.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

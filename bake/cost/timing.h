@@ -2,7 +2,7 @@
 #ifndef VIT_COST_TIMING_H
 #define VIT_COST_TIMING_H
 
-#include "results.h"
+#include "report/results.h"
 #include <signal.h>
 
 /* One setting. */

@@ -3,11 +3,11 @@
  * with three balls. */
 #include "measure.h"
 
-#include "cost/adds.h"
+#include "cost/effect_cost.h"
 #include "cost/images.h"
-#include "cost/metrics.h"
-#include "cost/reference.h"
-#include "pipeline.h"
+#include "reference/metrics.h"
+#include "reference/reference.h"
+#include "pack/pipeline.h"
 
 enum {
     WIDTH = 320,

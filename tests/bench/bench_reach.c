@@ -1,7 +1,7 @@
 /* Sides that light can reach: seconds of CPU, all threads, and rays over the number of triangles, the exponent that fits the
  * seconds (1 is linear) and the memory of the process at its most. Only reach_dark_sides() is timed. Argument: the most
  * triangles, default 5 million. */
-#include "reach.h"
+#include "dark_sides/dark_sides.h"
 #include "reach_models.h"
 #include <sys/resource.h>
 

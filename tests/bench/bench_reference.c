@@ -2,7 +2,7 @@
  * Also what one path a pixel costs and how wrong it is: the rival at equal error. On every fourth pixel of 1280 x 720, that is
  * 320 x 180. */
 #include "../pack_sections.h"
-#include "cost/reference.h"
+#include "reference/reference.h"
 #include "scenes.h"
 
 #define EVERY 4u

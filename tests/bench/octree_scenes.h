@@ -2,7 +2,7 @@
 #ifndef VIT_BENCH_OCTREE_SCENES_H
 #define VIT_BENCH_OCTREE_SCENES_H
 
-#include "tracks.h"
+#include "motion/tracks.h"
 #include "ray_lab.h"
 #include "scenes.h"
 

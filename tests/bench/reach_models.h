@@ -5,8 +5,8 @@
 #define VIT_BENCH_REACH_MODELS_H
 
 #include "measure.h"
-#include "model.h"
-#include "tracks.h"
+#include "import/model.h"
+#include "motion/tracks.h"
 
 #define REACH_FRAMES 24u
 #define REACH_FACETS 24u /* of a part: a bolt of 4 * REACH_FACETS triangles */

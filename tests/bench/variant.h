@@ -5,7 +5,7 @@
 
 #include "measure.h"
 #include "pack_read.h"
-#include "pack_write.h"
+#include "pack/pack_write.h"
 #include "vit.h"
 
 #define PAGE 4096u

@@ -4,7 +4,7 @@
  * exhaustive look at the CSV of the same run says, and of
  * --fit-work the same in two runs; a budget too small is exit 3 with the closest miss; --write changes the quality block and
  * nothing else, and what it wrote bakes. */
-#include "scene.h"
+#include "scene/scene.h"
 #include "test_packs.h"
 #include <math.h>
 #include <stdbool.h>

@@ -8,9 +8,9 @@
  * from the runtime's tables. */
 #include "scene_lab.h"
 
-#include "cost/adds.h"
+#include "cost/effect_cost.h"
 #include "cost/fit.h"
-#include "effects.h"
+#include "pack/effects.h"
 #include "open_pack.h"
 #include "pack_sections.h"
 

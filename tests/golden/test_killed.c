@@ -4,7 +4,7 @@
  * signals the baker before, within and after each call that it makes on the output's folder, first to last, until a run ends by
  * itself. So every step of saving is met on the slowest machine as on the fastest, and the test knows which. A few kills at
  * arbitrary moments follow, of which only that is asked which must always hold. */
-#include "pack_write.h"
+#include "pack/pack_write.h"
 #include "test_packs.h"
 
 #include <dirent.h>

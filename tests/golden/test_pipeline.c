@@ -1,7 +1,7 @@
 /* Many packs from one import. What is stated: a frame that was chosen has the bits that it has among all frames, whatever
  * radius "auto" finds; a pack does not depend on the packs made before it; and another size is what that size bakes to on its
  * own. */
-#include "pipeline.h"
+#include "pack/pipeline.h"
 #include "test_packs.h"
 
 typedef struct lab {

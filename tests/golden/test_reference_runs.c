@@ -1,7 +1,7 @@
 /* A reference is the same to the bit however it is made: with any number of threads and of MPI ranks, in one go or interrupted
  * and resumed, computed or taken from the cache. For MPI the program runs itself again under mpirun (`--rank`), where it writes
  * the hash of what it got. */
-#include "cost/spread.h"
+#include "reference/spread.h"
 #include "reference_lab.h"
 #include <dirent.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
  * mesh file with such coordinates is baked and played, or refused, never worse. */
 #include "catalogue.h"
 #include "host_rays.h"
-#include "octahedral.h"
+#include "common/octahedral.h"
 #include "tool_run.h"
 #include <float.h>
 

@@ -1,5 +1,5 @@
-/* glTF's metallic-roughness materials as Phong lobes (bake/glossy.c), against glTF's own BRDF (GGX, Smith, Schlick; glTF 2.0,
- * appendix B) in double, integrated over the hemisphere.
+/* glTF's metallic-roughness materials as Phong lobes (bake/import/metallic_roughness.c), against glTF's own BRDF (GGX, Smith,
+ * Schlick; glTF 2.0, appendix B) in double, integrated over the hemisphere.
  *
  * What can go wrong: highlights are too sharp or too wide, too bright or too dark, at some roughness or angle. Nothing makes a
  * Phong lobe a GGX lobe: it has no tails, it does not stretch at grazing angles, where it also loses light below the horizon,
@@ -8,7 +8,7 @@
  * normal incidence, not 0.3. What a rough metal of ours reflects too much, 0.55 of 0.8 at roughness 1, is what GGX with one
  * scattering loses. */
 #include "catalogue.h"
-#include "glossy.h"
+#include "import/metallic_roughness.h"
 #include "vitrine_pack.h"
 #include <math.h>
 

@@ -7,7 +7,7 @@
  * another, so only the blocks' triangles are blockers. */
 #include "catalogue.h"
 #include "../pack_sections.h"
-#include "cost/reference.h"
+#include "reference/reference.h"
 #include "test_packs.h"
 #include <math.h>
 

@@ -5,7 +5,7 @@
  * so has everything that reflects or lets through all light. What is drawn at random is held to five times the standard error
  * that the reference states, and that error to a bound, so that no check passes for its noise. */
 #include "catalogue.h"
-#include "cost/paths.h"
+#include "reference/paths.h"
 #include "reference_lab.h"
 #include <stdio.h>
 

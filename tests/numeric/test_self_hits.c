@@ -1,10 +1,10 @@
 /* Shadow rays that start on surfaces: do they hit the surface that they leave?
  *
  * What can go wrong: a hit's position is wrong by some ulps of the largest coordinate, so it may lie behind the surface, and a
- * ray from there is blocked at once: acne. The baker moves starts off by ray_offset (bake/geometry.c), at least 2^-16 of the
- * largest coordinate and 1e-5 of the scene's diagonal. The room is a turned box with convex inside: between two places in it
- * nothing is in the way, so whatever blocks is wrong. The bound is none, at each scale from 1e-4 to 1e6 m, and moved from the
- * origin by up to 1000 times the room's size. One thing remains: a hit within some ulps of an edge may lie behind the next
+ * ray from there is blocked at once: acne. The baker moves starts off by ray_offset (bake/geometry/geometry.c), at least 2^-16
+ * of the largest coordinate and 1e-5 of the scene's diagonal. The room is a turned box with convex inside: between two places
+ * in it nothing is in the way, so whatever blocks is wrong. The bound is none, at each scale from 1e-4 to 1e6 m, and moved from
+ * the origin by up to 1000 times the room's size. One thing remains: a hit within some ulps of an edge may lie behind the next
  * wall, which its own wall's normal does not move it away from; such places are as rare as they are thin, and the row says how
  * thin. Farther off, positions have too few bits left: the offset is a part of the room (1.6 % at 1000 sizes) and at 2^16 sizes
  * it is all of it; the sweep shows it. */

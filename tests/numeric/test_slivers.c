@@ -2,15 +2,15 @@
  *
  * What can go wrong: a normal is a cross product, and of a sliver nearly all of it would be rounding in float: the distance
  * n . a / n . d may be anything, and a triangle whose normal rounds to 0 cannot be hit at all, so that light comes through
- * where it closes the mesh. The baker computes normals in double (bake/triangle.h) and drops triangles that have no area even
- * so; this mesh does the same. The bounds: no ray leaves, since the edge test does not use the normal; and distances are as
- * good as any triangle's, at every aspect (the sweep: flat). What stays open: of a triangle without area whose three vertices
- * are in three places nothing is left but a vertex on its neighbours' edge, where rounding makes cracks; one ray in 1e4 that
- * are aimed at such places finds one. */
+ * where it closes the mesh. The baker computes normals in double (bake/common/triangle.h) and drops triangles that have no area
+ * even so; this mesh does the same. The bounds: no ray leaves, since the edge test does not use the normal; and distances are
+ * as good as any triangle's, at every aspect (the sweep: flat). What stays open: of a triangle without area whose three
+ * vertices are in three places nothing is left but a vertex on its neighbours' edge, where rounding makes cracks; one ray in
+ * 1e4 that are aimed at such places finds one. */
 #include "catalogue.h"
 #include "host_rays.h"
 #include "oracle/exact_ray.h"
-#include "triangle.h"
+#include "common/triangle.h"
 
 #define RAYS (1u << 17)
 #define SQUARES 24

@@ -1,7 +1,7 @@
 /* The atlas. Images are made by hand with texels that tell where they come from; what is read back goes through vit_texture and
  * vit_mip as a kernel would, so that layout, gutter and colour are tested together. Means are checked against numbers worked
  * out here, not against the filter's own code. */
-#include "atlas.h"
+#include "geometry/atlas.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,7 +2,7 @@
  * each triangle in exactly one leaf, each box exactly around what is below it, indices that grow downwards, a bounded depth.
  * Models are made by hand from a fixed generator; the worst ones (all triangles alike, sizes that grow exponentially) drive the
  * builder into its fallbacks. Determinism is tested on more triangles than Embree's threshold for parallel work. */
-#include "bvh.h"
+#include "geometry/bvh.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@ void bvh_free_shallow(bvh *b);
 #define EMBREE_DEPTH 10
 #define bvh_build bvh_build_shallow
 #define bvh_free bvh_free_shallow
-#include "../../bake/bvh.c"
+#include "geometry/bvh.c"
 #undef bvh_build
 #undef bvh_free
 

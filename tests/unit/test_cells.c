@@ -1,10 +1,10 @@
-/* Cells of triangles' sides: the C of bake/cells.c against geometry, and kernels/cells.clh against that C.
+/* Cells of triangles' sides: the C of bake/geometry/cells.c against geometry, and kernels/cells.clh against that C.
  *
  * What could go wrong silently: a formula for a cell's number that is right inside and wrong along edges, where no picture
  * shows it. So the cells' areas must add up to the side's, a point must lie in the cell that it is said to lie in, and the
  * kernel must give the very same numbers as the C for many points, among them corners, edges and points that rounding has put a
  * little outside. */
-#include "cells.h"
+#include "geometry/cells.h"
 #include "kernel_lab.h"
 
 #include <math.h>

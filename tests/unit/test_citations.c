@@ -451,7 +451,7 @@ static void expect(const char *path, const char *text, const char *fault_or_null
     l->quiet = true;
     add(l, METHOD, strcmp(path, METHOD) == 0 ? text : A_METHOD);
     add(l, "bake/README.md", "# Baker\n\n## Zones and areas\n\n### 2026-11-22: the radius, later\n");
-    add(l, "bake/zones.c", "int zone(int x);");
+    add(l, "bake/zones/zones.c", "int zone(int x);");
     if (strcmp(path, METHOD) != 0)
         add(l, path, text);
     check_all(l);
@@ -475,7 +475,7 @@ static void each_kind_of_wrong_citation_is_found(void **state) {
     expect("runtime/README.md", "# R\n(Rooms, below)\n", "no such section here: Rooms");
     expect("runtime/README.md", "# R\n`bones.c`\n", "no such file: bones.c");
     expect("bake/a.c", "/* as\n   in bake/bones.c */", "bake/a.c:2: no such file: bake/bones.c");
-    expect("bake/a.c", "/* cone() of\n * bake/zones.c */", "no such function there: cone() of");
+    expect("bake/a.c", "/* cone() of\n * bake/zones/zones.c */", "no such function there: cone() of");
     expect("kernels/a.cl", "/* Pass 1: hits */", "say its name: Pass 1");
     expect(METHOD, "# M\n[Woop 2013]\n## The four systems\n", "no such source below: Woop 2013");
     expect(METHOD, "# M\n    a (1)\n    b (3)\n", "equation out of order:  (3)");
@@ -489,11 +489,11 @@ static void right_citations_pass(void **state) {
         "/* METHODS.md, \"Rays\" (1), and\n * kernels/METHODS.md,\n * \"Splats\". After Woop and others, JCGT 2(1), 2013. */",
         NULL);
     expect("bake/a.c",
-           "/* zone() of bake/zones.c; README.md, \"Zones and areas\"; bake/README.md, \"The radius\"; x = 1920; Roberts 2018. "
-           "*/ int y = 2001;",
+           "/* zone() of bake/zones/zones.c; README.md, \"Zones and areas\"; bake/README.md, "
+           "\"The radius\"; x = 1920; Roberts 2018. */ int y = 2001;",
            NULL);
     expect("bake/a.c", "char *s = \"in 1999\"; /* https://x.org/README.md */", NULL);
-    expect("runtime/README.md", "# R\n## Rooms\n(Rooms, below) `zones*.c` `bake/zones.c` `../bake/zones.c` `build/x.h`\n",
+    expect("runtime/README.md", "# R\n## Rooms\n(Rooms, below) `zones/*.c` `bake/zones/zones.c` `../bake/zones/zones.c` `build/x.h`\n",
            NULL);
 }
 

@@ -2,7 +2,7 @@
  * over random results with ties); the choice is what an exhaustive look finds; a budget that nothing fits is refused with the
  * closest miss; work units are the documented sum; and a scene file's other bytes survive another quality block. */
 #include "cost/fit.h"
-#include "cost/front.h"
+#include "cost/pareto.h"
 #include "cost/images.h"
 #include "cost/rewrite.h"
 #include "cost/timing.h"

@@ -1,7 +1,7 @@
 /* Triangle and attribute records. The decoder here is written anew from the formula in octahedral.h, in float, as the kernels
  * do it; the error bound of the normals is measured over directions that include the octahedron's edges and corners, where
  * encoders err. */
-#include "bvh.h"
+#include "geometry/bvh.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* Glass drawn in: faces move by the gap, bodies stay closed, nothing else moves, and triangles too small for the gap keep their
  * way round. */
-#include "glass_gap.h"
-#include "triangle.h"
+#include "geometry/glass_inset.h"
+#include "common/triangle.h"
 #include "vitrine_pack.h"
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* Guided photons: a dark room with a small hole in its ceiling, in a wide field. Even paths hardly ever come in; guided ones
  * must, and must bring as much light as comes in by geometry: the light's flux through the hole, times the albedo for every
  * reflection, less what leaves by the hole again (1 in 140 at most). */
-#include "guides.h"
+#include "light/photon_guiding.h"
 #include "photon_room.h"
 
 #define PI 3.14159265358979

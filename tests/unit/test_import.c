@@ -3,7 +3,7 @@
  * the tests write themselves, each of which shows one rule in numbers that can be worked out by hand (a unit quad, an image of
  * two by two texels); then, where the test scenes are at hand (VITRINE_SCENES or ../shared/scenes), real and malformed files,
  * whose triangle counts were taken independently. Without them those tests are skipped. */
-#include "model.h"
+#include "import/model.h"
 #include "vitrine_pack.h"
 #include <math.h>
 #include <setjmp.h>

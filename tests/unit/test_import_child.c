@@ -3,7 +3,7 @@
  * the importer's (tests/test.mk), so that the child can be made to crash, loop, eat memory, fall silent or lie at will; each
  * must end in one line, VIT_BAD_INPUT and nothing to free, and this process must live. What comes back is not trusted either:
  * messages are forged byte by byte. */
-#include "importer.h"
+#include "import/importer.h"
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>

@@ -1,8 +1,8 @@
 /* What the importer makes of MTL's and glTF's materials that are not matt. What is hard: programs write highlights, mirrors and
  * transparency that nobody meant, and mean what they do not write. Strategy: tiny files written here, one rule each, with
  * numbers that can be worked out by hand; where the test scenes are at hand (VITRINE_SCENES or ../shared/scenes), real ones. */
-#include "glossy.h"
-#include "model.h"
+#include "import/metallic_roughness.h"
+#include "import/model.h"
 #include "vitrine_pack.h"
 #include <math.h>
 #include <setjmp.h>

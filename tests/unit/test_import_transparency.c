@@ -1,7 +1,7 @@
 /* Transparent materials are holes, but no file may vanish for it. What is hard: exporters write opacity where transparency is
  * asked for, and the other way round, and nothing in a file says so. Strategy: small files of three materials "a", "b", "c" of
  * 8, 1 and 1 triangles, one row each: which of them are left, and which warning says so. */
-#include "model.h"
+#include "import/model.h"
 #include "vitrine_pack.h"
 #include <setjmp.h>
 #include <stdarg.h>

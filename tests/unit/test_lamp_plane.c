@@ -1,7 +1,7 @@
 /* Lamps in the plane of other faces. Stated: a panel in its ceiling comes out of it to the cameras' side, whichever way it is
  * wound and wherever it stands among the triangles; the lid of a closed body, a panel beside the ceiling, one a centimetre
  * below and one across it stay. */
-#include "lamp_plane.h"
+#include "geometry/area_light_plane.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* What --list says. What is hard: names come from strangers and go into JSON and onto terminals; extensions stand in a part of
  * the file that Assimp does not give. Strategy: small files made here, one with the worst of names, whose JSON must be valid by
  * RFC 8259 and hold what was put in; extensions in all the places where the words may stand without being the list. */
-#include "gltf_extensions.h"
+#include "import/gltf_extensions.h"
 #include "json_check.h"
 #include "list.h"
 #include <setjmp.h>

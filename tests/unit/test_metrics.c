@@ -1,5 +1,5 @@
 /* Metrics of pictures whose errors can be worked out by hand. */
-#include "cost/metrics.h"
+#include "reference/metrics.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

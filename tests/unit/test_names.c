@@ -1,6 +1,6 @@
 /* Names that are offered for one that there is not: what counts is that the one that was meant comes first, that a line stays a
  * line's length, and that lists of any length and names of any kind do. */
-#include "names.h"
+#include "common/names.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "pack_write.h"
+#include "pack/pack_write.h"
 
 #include <dirent.h>
 #include <fcntl.h>

@@ -3,7 +3,7 @@
  * there on with them, so a few may differ. */
 #include "photon_room.h"
 #include "kernel_lab.h"
-#include "zones.h"
+#include "zones/zones.h"
 
 /* The kernel with its frame number fixed: the laboratory passes buffers only. */
 static const char frame_zero[] =

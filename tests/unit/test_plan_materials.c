@@ -2,7 +2,7 @@
  * its share of the photons. What is hard: an effect too many costs time in every frame, one too few leaves a material black.
  * Strategy: one room with one thing more each, through the steps of the baker that need no device; what is called for is held
  * to be that and nothing else. */
-#include "planner.h"
+#include "pack/planner.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

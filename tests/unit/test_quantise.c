@@ -1,8 +1,8 @@
 /* Vertices in fewer bits: how far they may move, what must not tear, and what is dropped. The model is a soup of random
  * triangles, many of them with shared or repeated corners and some far smaller than a step of the grid. */
 #include "kernel_lab.h"
-#include "octahedral.h"
-#include "quantise.h"
+#include "common/octahedral.h"
+#include "geometry/quantise.h"
 #include <math.h>
 
 enum { VERTICES = 3000, TRIANGLES = 4000, TINY = 100, MATERIALS = 2 };

@@ -1,8 +1,8 @@
 /* Dark sides. Random rays decide, so the tests use scenes in which the answer is beyond doubt: closed boxes, boxes with a hole,
  * faces that touch. The front of a box's face is outside. What must never happen is a lit side that is called dark; several
  * tests are about what could lead to it: small triangles, cut-outs, lights that are somewhere for one frame only. */
-#include "planner.h"
-#include "reach.h"
+#include "pack/planner.h"
+#include "dark_sides/dark_sides.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "cost/report_parts.h"
+#include "report/report_parts.h"
 #include "report_lab.h"
 #include <png.h>
 

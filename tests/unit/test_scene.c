@@ -3,7 +3,7 @@
  * field by field, and its defaults; then one scene a mistake, each of which differs from a good one in that mistake alone,
  * stands on a line of its own, and must give VIT_BAD_INPUT and exactly "file:line: ... what". Scenes go through real files,
  * since files (missing, folders, includes) are half of the subject. */
-#include "scene.h"
+#include "scene/scene.h"
 #include "vitrine_pack.h"
 #include <math.h>
 #include <setjmp.h>

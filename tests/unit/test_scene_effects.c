@@ -1,7 +1,7 @@
 /* The scene file's settings for effects: ambient light, sky, directional lights, mirrors, glass, lobes, anti-aliasing. What is
  * hard, and the strategy, are as in test_scene.c: one scene in which no setting has its default, and one scene a mistake. */
-#include "copies.h"
-#include "scene.h"
+#include "pack/copies.h"
+#include "scene/scene.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* The low-discrepancy points of reference paths: what makes them better than random, and what must be as in random ones. */
-#include "cost/sequence.h"
+#include "reference/sequence.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

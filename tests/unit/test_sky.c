@@ -1,7 +1,7 @@
 /* Pictures of the sky: where each direction's light comes from, that none is lost on the way from longitude and latitude to the
  * octahedral square, that the square's edges do not show, and that directions are chosen as they shine. Truths are sums over
  * the picture in double. */
-#include "sky.h"
+#include "light/sky.h"
 
 #include <stdarg.h>
 #include <stddef.h>

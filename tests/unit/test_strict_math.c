@@ -1,5 +1,5 @@
 /* The baker's elementary functions are as good as the C library's, and their bits are these on every machine. */
-#include "strict_math.h"
+#include "common/strict_math.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,8 +2,8 @@
  * stretched or off by half a pixel. Strategy: scenes built in memory (no files), records checked by what they are for: rays
  * through known pixels, the spot light's attenuation at its two cones, irradiance at a distance, all corners of the box in the
  * image. Curves are checked by their promise (through the keys, never beyond them), not by their formula. */
-#include "curves.h"
-#include "tracks.h"
+#include "motion/curves.h"
+#include "motion/tracks.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
 /* What Embree proposes leaves out nothing: hits are those of a loop over all triangles, to the bit, from near and far, and rays
  * at the corners and edges of closed bodies do not get through. */
-#include "triangle_rays.h"
+#include "geometry/triangle_rays.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

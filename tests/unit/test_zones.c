@@ -5,8 +5,8 @@
  * on the near side of a line at distance h r is half_plane(h), and half a plane that stands at distance h r across it is (1 -
  * h^2)^2 / 2. */
 #include "photon_room.h"
-#include "reach.h"
-#include "zones.h"
+#include "dark_sides/dark_sides.h"
+#include "zones/zones.h"
 
 #include <stdio.h>
 

@@ -2,13 +2,13 @@
  * accepted must make a pack that the loader takes. Dark sides and zones take a second whatever the mesh: one input of 64 goes
  * through them, and every seed in make test (fuzz_mesh_whole). */
 #include "fuzz.h"
-#include "glass_gap.h"
+#include "geometry/glass_inset.h"
 #include "pack_read.h"
-#include "photons.h"
-#include "planner.h"
-#include "zones.h"
+#include "light/photons.h"
+#include "pack/planner.h"
+#include "zones/zones.h"
 
-#include "pack_write.h"
+#include "pack/pack_write.h"
 
 #include <stdio.h>
 #include <stdlib.h>

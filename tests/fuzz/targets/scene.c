@@ -1,8 +1,8 @@
 /* The scene file on any bytes: files scene.cfg, and part.cfg and deep.cfg to include. What is accepted must hold the ranges
  * that bake/README.md states, say itself again as text, and give finite cameras and lights for a model. */
 #include "fuzz.h"
-#include "scene.h"
-#include "tracks.h"
+#include "scene/scene.h"
+#include "motion/tracks.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,33 @@
+/* dark_sides.c: sides of triangles that light does not reach, directly or after any number of reflections: insides of walls,
+ * touching faces. And, found with the same rays, how far light goes from side to side. */
+#ifndef VIT_BAKE_REACH_H
+#define VIT_BAKE_REACH_H
+
+#include "geometry/bvh.h"
+#include "motion/tracks.h"
+
+/* A side is dark if its irradiance, averaged over the path, with surfaces that reflect REACH_ALBEDO, stays below
+ * REACH_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
+ * everywhere. */
+#define REACH_ALBEDO 0.8f
+#define REACH_THRESHOLD 1e-4f
+
+typedef struct reach {
+    double area;                  /* m2, both sides of all triangles but those of mirrors and glass */
+    double dark_front, dark_back; /* m2 of sides flagged dark */
+    double free_path;             /* metres light goes from side to side, on average; 0: it finds none */
+    uint32_t dark_sides;
+    uint64_t rays;
+    double seconds;
+} reach;
+
+/* `done` runs from 0 to 1. Called by the thread that called reach_dark_sides(). */
+typedef void reach_progress_fn(void *user, double done);
+
+/* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames, the model's
+ * area lights and, if `sky_light`, light from all round. Without any light or matt surface nothing is flagged. The result does
+ * not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory, or Embree fails. */
+vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
+                            reach_progress_fn *progress, void *user, reach *out, vit_text *why);
+
+#endif

@@ -1,0 +1,179 @@
+/* Light leaves lights, and sides ask lights: points, directions, area lights, the sky; any light that shines at all counts as
+ * much as any other. */
+#include "dark_sides/parts.h"
+#include "light/sky.h"
+#include <math.h>
+#include <stdlib.h>
+
+#define LIGHT_STREAM 0xffffffffu
+
+static double mean_intensity(const vit_light *l) {
+    return ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) / 3.0;
+}
+
+static vec plus(vec a, float s, vec b) {
+    return (vec){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static vec vec_of(const float p[3]) {
+    return (vec){p[0], p[1], p[2]};
+}
+
+/* x and y along axes across the unit vector n, z along it (Duff et al. 2017). */
+static vec about(vec n, float x, float y, float z) {
+    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    return (vec){(1.0f + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
+                 -sign * n.x * x - n.y * y + n.z * z};
+}
+
+/* Even over the cone cos >= least about n; the whole sphere for -1. */
+static vec cone_direction(vec n, float least, float u, float v) {
+    const float z = 1.0f - u * (1.0f - least), r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+    float sine, cosine;
+    sincos_turn(v, &sine, &cosine);
+    return about(n, r * cosine, r * sine, z);
+}
+
+static vec disc_point(vec center, vec n, float radius, float u, float v) {
+    const float r = radius * sqrtf(u);
+    float sine, cosine;
+    sincos_turn(v, &sine, &cosine);
+    return plus(center, 1.0f, about(n, r * cosine, r * sine, 0.0f));
+}
+
+static const vit_light *light_of(const reach_lights *l, uint32_t source, uint32_t frame) {
+    return l->t->lights + (size_t)frame * l->t->light_count + source;
+}
+
+static bool is_sky(const reach_lights *l, uint32_t source) {
+    return l->sky && source + 1 == l->sources;
+}
+
+/* False: out of memory. */
+static bool find_lamps(reach_search *s) {
+    reach_lights *l = &s->lights;
+    double area = 0.0, sum = 0.0;
+    for (uint32_t i = 0; i < s->m->triangles; i++)
+        if (material_lights(side_material(s->m, s->g, 2 * i))) {
+            area += (double)s->area[i];
+            l->lamp_count++;
+        }
+    l->lamps = malloc((l->lamp_count + 1u) * sizeof *l->lamps);
+    l->lamp_sum = malloc((l->lamp_count + 1u) * sizeof *l->lamp_sum);
+    if (!l->lamps || !l->lamp_sum)
+        return false;
+    for (uint32_t i = 0, k = 0; k < l->lamp_count; i++)
+        if (material_lights(side_material(s->m, s->g, 2 * i))) {
+            sum += (double)s->area[i] / area + 1.0 / l->lamp_count;
+            l->lamps[k] = i;
+            l->lamp_sum[k++] = sum;
+        }
+    return true;
+}
+
+bool lights_open(reach_search *s, const tracks *t, uint32_t frames, bool sky_light) {
+    float center[3];
+    s->lights = (reach_lights){.t = t, .frames = frames, .sky = sky_light};
+    if (!find_lamps(s))
+        return false;
+    s->lights.sources = t->light_count + (s->lights.lamp_count > 0) + sky_light;
+    sky_sphere(s->m->lo, s->m->hi, center, &s->lights.radius);
+    s->lights.center = vec_of(center);
+    return true;
+}
+
+void lights_close(reach_lights *l) {
+    free(l->lamps);
+    free(l->lamp_sum);
+}
+
+bool lights_shine(const reach_lights *l) {
+    for (size_t i = 0; i < (size_t)l->frames * l->t->light_count; i++)
+        if (mean_intensity(l->t->lights + i) > 0.0)
+            return true;
+    return l->sky || l->lamp_count > 0;
+}
+
+static uint32_t choose_lamp(const reach_lights *l, float x) {
+    uint32_t low = 0, high = l->lamp_count - 1;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2;
+        if (l->lamp_sum[middle] > 2.0 * (double)x)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return l->lamps[low];
+}
+
+bool lights_leave(const reach_search *s, uint32_t ray, vec *origin, vec *direction) {
+    const reach_lights *all = &s->lights;
+    const uint32_t source = ray % all->sources, frame = (uint32_t)((uint64_t)ray * all->frames / s->light_rays);
+    const float a = sequence(LIGHT_STREAM, ray, 0), b = sequence(LIGHT_STREAM, ray, 1), c = sequence(LIGHT_STREAM, ray, 2),
+                d = sequence(LIGHT_STREAM, ray, 3);
+    if (is_sky(all, source)) {
+        const vec from = cone_direction((vec){0.0f, 0.0f, 1.0f}, -1.0f, a, b);
+        *origin = disc_point(plus(all->center, all->radius, from), from, all->radius, c, d);
+        *direction = (vec){-from.x, -from.y, -from.z};
+        return true;
+    }
+    if (source == all->t->light_count) { /* no dimension is left for the lamp and its side */
+        const uint32_t side = 2 * choose_lamp(all, sequence(ray, 0, 0)) + (sequence(ray, 0, 1) < 0.5f);
+        const ray_side lamp = side_of(s->g, side);
+        *origin = side_point(&lamp, a, b);
+        *direction = cosine_direction(lamp.normal, c, d);
+        return !ray_scene_covered(&s->rays, side, *origin);
+    }
+    const vit_light *l = light_of(all, source, frame);
+    *origin = vec_of(l->position);
+    if (l->kind == VIT_LIGHT_DIRECTIONAL) {
+        *direction = vec_of(l->direction);
+        *origin = disc_point(*origin, *direction, l->spot_scale, a, b);
+    } else {
+        const bool spot = l->kind == VIT_LIGHT_SPOT;
+        *direction = cone_direction(spot ? vec_of(l->direction) : (vec){0.0f, 0.0f, 1.0f}, spot ? l->cos_outer : -1.0f, a, b);
+    }
+    return mean_intensity(l) > 0.0;
+}
+
+static uint32_t pick(float u, uint32_t count) {
+    const uint32_t i = (uint32_t)(u * (float)count);
+    return i < count ? i : count - 1;
+}
+
+/* A point of an area light, on the side of it that `o` is on. False: something covers it there. */
+static bool lamp_point(const reach_search *s, uint32_t other, vec o, vec *at) {
+    const uint32_t lamp = 2 * choose_lamp(&s->lights, sequence(other, 1, 0));
+    const ray_side face = side_of(s->g, lamp);
+    const vec front = side_point(&face, sequence(other, 1, 1), sequence(other, 1, 2)), across = face.normal;
+    const bool before = (o.x - front.x) * across.x + (o.y - front.y) * across.y + (o.z - front.z) * across.z > 0.0f;
+    *at = before ? front : plus(front, -2.0f * s->g->ray_offset, across);
+    return !ray_scene_covered(&s->rays, lamp + !before, *at);
+}
+
+bool lights_ask(const reach_search *s, uint32_t side, const ray_side *from, uint32_t i) {
+    const reach_lights *all = &s->lights;
+    const uint32_t source = pick(side_sequence(from, i, 2), all->sources), frame = pick(side_sequence(from, i, 3), all->frames);
+    const vec n = from->normal, o = side_point(from, side_sequence(from, i, 0), side_sequence(from, i, 1));
+    const uint32_t other = side + i; /* for other numbers */
+    if (is_sky(all, source))
+        return ray_scene_passes(&s->rays, o, cosine_direction(n, sequence(other, 1, 0), sequence(other, 1, 1)), INFINITY);
+    const vit_light *l = source < all->t->light_count ? light_of(all, source, frame) : NULL;
+    if (l && !(mean_intensity(l) > 0.0))
+        return false;
+    vec at = {0.0f, 0.0f, 0.0f}, axis = {0.0f, 0.0f, 0.0f};
+    if (l) {
+        at = vec_of(l->position);
+        axis = vec_of(l->direction);
+    } else if (!lamp_point(s, other, o, &at))
+        return false;
+    const vec to = {at.x - o.x, at.y - o.y, at.z - o.z};
+    const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
+    const bool parallel = l && l->kind == VIT_LIGHT_DIRECTIONAL;
+    const vec unit = parallel ? (vec){-axis.x, -axis.y, -axis.z} : (vec){to.x / d, to.y / d, to.z / d};
+    if (!(unit.x * n.x + unit.y * n.y + unit.z * n.z > 0.0f))
+        return false;
+    if (l && l->kind == VIT_LIGHT_SPOT && !(-(unit.x * axis.x + unit.y * axis.y + unit.z * axis.z) >= l->cos_outer))
+        return false;
+    return ray_scene_passes(&s->rays, o, unit, parallel ? INFINITY : d);
+}

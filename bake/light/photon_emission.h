@@ -1,0 +1,36 @@
+/* photon_emission.c: how photons leave lights, and the other way round: which of a light's numbers send a photon to a place. */
+#ifndef VIT_BAKE_PHOTON_EMISSION_H
+#define VIT_BAKE_PHOTON_EMISSION_H
+
+#include "light/photon_rays.h"
+#include "light/photons.h"
+
+/* A photon as it leaves a light. */
+typedef struct emission {
+    vec3 origin, direction, power; /* W */
+    float bounce[2];               /* guided: the numbers of its first hit */
+} emission;
+
+/* Path i of the light; `number`: the path's number among all lights'. */
+emission photon_leave(const photon_rays *rays, const photons_light *l, uint32_t i, uint32_t number);
+/* How many numbers in [0, 1) choose a path's start: 2, or 4 where a place and a direction are both to be chosen. */
+uint32_t photon_emission_numbers(const photons_light *l);
+
+/* Light that comes straight to a place, and the numbers by which photon_leave() sends photons that way. */
+typedef struct arrival {
+    vec3 direction;  /* unit, to the light */
+    vec3 irradiance; /* W/m2 of a surface that faces it, if nothing is between; 0: there is none */
+    float distance;  /* m */
+    float at[4];
+} arrival;
+
+/* x, y: random numbers that choose a place of area lights, a direction to the sky. */
+arrival photon_arrival(const photon_rays *rays, const photons_light *l, vec3 p, double x, double y);
+
+/* What a range changes about the light's irradiance at squared distance d2; light_left() of kernels/direct.cl. */
+float photon_range_factor(const vit_light *light, float d2);
+/* Cosine-distributed direction about n from two random numbers, and the numbers of a unit direction. */
+vec3 photon_cosine_lobe(vec3 n, float a, float b);
+void photon_cosine_numbers(vec3 n, vec3 d, float *a, float *b);
+
+#endif

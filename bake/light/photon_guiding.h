@@ -1,0 +1,35 @@
+/* photon_guiding.c: which photon paths matter: paths traced from the cameras of the path, whose every reflection is joined with
+ * the lights. A photon that goes such a way backwards lights what is seen. */
+#ifndef VIT_BAKE_GUIDES_H
+#define VIT_BAKE_GUIDES_H
+
+#include "light/guiding_tree.h"
+#include "light/photons.h"
+#include "motion/tracks.h"
+
+typedef struct guides_input {
+    photon_scene scene;
+    const tracks *tracks; /* of all frames */
+    uint32_t frames, width, height;
+    uint32_t bounces;          /* hits of a photon path */
+    const bool *gives_photons; /* a light */
+    const emitters *area;      /* that give photons, or NULL */
+    const photons_light *sky;  /* the same */
+    unsigned threads;          /* 0: all cores; changes no bit */
+} guides_input;
+
+/* Of the tracks' lights, then of all area lights together, then of the sky. */
+typedef struct guides {
+    guide *guide;   /* empty where nothing was found, and of lights that move */
+    double *worth;  /* of a light: its share of the indirect light that is seen; sum 1, or 0 if there is none */
+    vec3 around;    /* as in photons_light: the middle of the cameras' places */
+    uint32_t count; /* light_count + 2; 0: not looked for */
+} guides;
+
+/* VIT_FAILED: out of memory, or Embree fails; *out is empty then. */
+vit_status guides_find(const guides_input *in, guides *out, vit_text *why);
+void guides_free(guides *g);
+/* Of a light, of all area lights (light_count) or of the sky (light_count + 1); NULL: its paths go evenly. `g` may be NULL. */
+const guide *guides_of(const guides *g, uint32_t source);
+
+#endif

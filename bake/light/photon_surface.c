@@ -1,0 +1,185 @@
+#include "light/photon_surface.h"
+
+/* Signed edge functions of a triangle: weights of its vertices, not normalised; ray_edges() of kernels/ray.clh. */
+static void edge_weights(const vit_triangle *t, vec3 origin, vec3 direction, float weight[3]) {
+    vec3 across, up;
+    vec3_across(direction, &across, &up);
+    const float *vertex[3] = {t->v0, t->v1, t->v2};
+    float x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        const vec3 v = vec3_sub(vec3_load(vertex[k]), origin);
+        x[k] = vec3_dot(v, across);
+        y[k] = vec3_dot(v, up);
+    }
+    weight[0] = x[1] * y[2] - y[1] * x[2];
+    weight[1] = x[2] * y[0] - y[2] * x[0];
+    weight[2] = x[0] * y[1] - y[0] * x[1];
+}
+
+/* A coordinate that is not finite, which only an absurd texture mapping gives, becomes 0. */
+static float wrap(float x, uint32_t mode) {
+    const float half = x * 0.5f, twice = (half - floorf(half)) * 2.0f;
+    float r = x - floorf(x);
+    if (mode == VIT_WRAP_CLAMP)
+        r = float_min(float_max(x, 0.0f), 1.0f);
+    else if (mode == VIT_WRAP_MIRROR)
+        r = twice > 1.0f ? 2.0f - twice : twice;
+    return r >= 0.0f ? r : 0.0f;
+}
+
+static vec3 texel_color(const atlas *a, uint32_t word) {
+    const vit_u32 code = a->texels[word];
+    const float scale = 1.0f / 1023.0f;
+    const float r = (float)(code & 1023u) * scale, g = (float)((code >> 10) & 1023u) * scale,
+                b = (float)((code >> 20) & 1023u) * scale;
+    return (vec3){r * r, g * g, b * b};
+}
+
+/* As texture_level() of kernels/texture.clh. */
+static int mip_level(uint64_t effects, float footprint2, float doubled_area, float doubled_uv_area, float texels,
+                     float *blend) {
+    const float covered = footprint2 * fabsf(doubled_uv_area) * texels / float_max(doubled_area, 1e-30f);
+    const float clamped = float_max(float_min(covered, 1e30f), 1e-30f);
+    int32_t bits;
+    memcpy(&bits, &clamped, sizeof bits);
+    const int exponent = (bits >> 23) - 127;
+    *blend = 0.0f;
+    if (!(effects & VIT_BIT(TRILINEAR)))
+        return exponent < -1 ? 0 : (exponent + 1) >> 1;
+    if (exponent < 0)
+        return 0;
+    const int32_t mantissa_bits = (bits & 0x7fffff) | 0x3f800000;
+    float mantissa;
+    memcpy(&mantissa, &mantissa_bits, sizeof mantissa);
+    *blend = ((float)(exponent & 1) + (mantissa - 1.0f)) * 0.5f;
+    return exponent >> 1;
+}
+
+static vec3 nearest_color(const atlas *a, const vit_mip *mip, float s, float t) {
+    const uint32_t x = (uint32_t)(s * (float)mip->width), y = (uint32_t)(t * (float)mip->height);
+    return texel_color(a, mip->offset + (y < mip->height ? y : mip->height - 1) * mip->pitch +
+                              (x < mip->width ? x : mip->width - 1));
+}
+
+/* s, t: wrapped, 0..1. The gutter holds what lies beyond the image. */
+static vec3 bilinear_color(const atlas *a, const vit_mip *mip, float s, float t) {
+    float u = fmaf(s, (float)mip->width, -0.5f), v = fmaf(t, (float)mip->height, -0.5f);
+    const float fu = floorf(u), fv = floorf(v);
+    const uint32_t word = mip->offset + (uint32_t)(int)fv * mip->pitch + (uint32_t)(int)fu;
+    u -= fu;
+    v -= fv;
+    const vec3 c00 = texel_color(a, word), c10 = texel_color(a, word + 1);
+    const vec3 c01 = texel_color(a, word + mip->pitch), c11 = texel_color(a, word + mip->pitch + 1);
+    const vec3 top = vec3_along(c00, vec3_sub(c10, c00), u), bottom = vec3_along(c01, vec3_sub(c11, c01), u);
+    return vec3_along(top, vec3_sub(bottom, top), v);
+}
+
+/* As surface_texture() of kernels/surface.clh. */
+static vec3 texture_color(const photon_scene *s, const vit_texture *texture, float x, float y, int level, float blend) {
+    const int coarsest = (int)texture->mip_count - 1;
+    const atlas *a = s->atlas;
+    const vit_mip *mip = a->mips + texture->first_mip + (level < coarsest ? level : coarsest);
+    const float u = wrap(x, texture->wrap_u), v = wrap(y, texture->wrap_v);
+    if (s->effects & VIT_BIT(NEAREST))
+        return nearest_color(a, mip, u, v);
+    const vec3 c = bilinear_color(a, mip, u, v);
+    if (!(s->effects & VIT_BIT(TRILINEAR)) || level >= coarsest)
+        return c;
+    return vec3_along(c, vec3_sub(bilinear_color(a, mip + 1, u, v), c), blend);
+}
+
+/* Reflectance of the triangle at barycentric weights b. width: of the footprint across the ray, m; cosine: of the ray to the
+ * normal. */
+static vec3 albedo_at(const photon_scene *s, uint32_t triangle, const float b[3], float doubled_area, float width,
+                      float cosine) {
+    const vit_attributes *at = s->attributes + triangle;
+    const vit_material *m = s->materials + (at->material & VIT_MATERIAL_INDEX);
+    const vec3 plain = vec3_load(m->albedo);
+    if (m->texture == VIT_NONE)
+        return plain;
+    const vit_texture *texture = s->atlas->textures + m->texture;
+    const vit_mip *finest = s->atlas->mips + texture->first_mip;
+    const float s0 = at->uv[0][0], t0 = at->uv[0][1], s1 = at->uv[1][0], t1 = at->uv[1][1], s2 = at->uv[2][0],
+                t2 = at->uv[2][1];
+    const float u = fmaf(b[2], s2, fmaf(b[1], s1, b[0] * s0)), v = fmaf(b[2], t2, fmaf(b[1], t1, b[0] * t0));
+    const float uv_area = (s1 - s0) * (t2 - t0) - (s2 - s0) * (t1 - t0);
+    const float footprint2 = width * width / float_max(cosine, 0.05f);
+    float blend;
+    const int level =
+        mip_level(s->effects, footprint2, doubled_area, uv_area, (float)finest->width * (float)finest->height, &blend);
+    return vec3_times(plain, texture_color(s, texture, u, v, level, blend));
+}
+
+/* The interpolated normal on the face's side; as in surface_at() of kernels/surface.clh. */
+static vec3 normal_at(const vit_attributes *at, const float b[3], vec3 face) {
+    if (!(at->material & VIT_TRIANGLE_SMOOTH))
+        return face;
+    const vec3 n0 = decoded_normal(at->normal[0]), n1 = decoded_normal(at->normal[1]), n2 = decoded_normal(at->normal[2]);
+    const vec3 n = vec3_unit(vec3_along(vec3_along(vec3_scale(n0, b[0]), n1, b[1]), n2, b[2]));
+    const float side = vec3_dot(n, face);
+    return side == 0.0f ? face : vec3_scale(n, side < 0.0f ? -1.0f : 1.0f);
+}
+
+#define SURFACE_GRAZING 0.125f /* as in kernels/surface.clh */
+
+/* As surface_before() of kernels/surface.clh. */
+static vec3 surface_before(vec3 origin, vec3 direction, float distance, vec3 face, float cosine, float offset) {
+    const float back = float_min(offset / float_max(cosine, SURFACE_GRAZING), distance);
+    return vec3_along(vec3_along(origin, direction, distance - back), face, float_max(fmaf(-back, cosine, offset), 0.0f));
+}
+
+photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
+                                   float cone, float b[3]) {
+    const vit_triangle *t = s->triangles + triangle;
+    float weight[3];
+    edge_weights(t, origin, direction, weight);
+    const float sum = weight[0] + weight[1] + weight[2];
+    const float b1 = sum == 0.0f ? 0.333333333f : weight[1] / sum, b2 = sum == 0.0f ? 0.333333333f : weight[2] / sum;
+    b[0] = 1.0f - b1 - b2;
+    b[1] = b1;
+    b[2] = b2;
+    const vec3 n = {t->nx, t->ny, t->nz};
+    const float doubled_area = sqrtf(vec3_dot(n, n)), facing = vec3_dot(n, direction);
+    photon_surface r;
+    const vit_attributes *at = s->attributes + triangle;
+    r.back = facing > 0.0f;
+    r.face = vec3_scale(vec3_unit(n), r.back ? -1.0f : 1.0f);
+    r.normal = normal_at(at, b, r.face);
+    r.material = s->materials + (at->material & VIT_MATERIAL_INDEX);
+    const float cosine = fabsf(facing) / float_max(doubled_area, 1e-30f);
+    r.position = surface_before(origin, direction, distance, r.face, cosine, s->ray_offset);
+    r.beyond = vec3_along(vec3_along(origin, direction, distance), r.face, -s->ray_offset);
+    r.albedo = albedo_at(s, triangle, b, doubled_area, cone * distance, cosine);
+    return r;
+}
+
+photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle) {
+    float b[3];
+    return photon_surface_seen(s, origin, direction, distance, triangle, PHOTON_CONE, b);
+}
+
+bool photon_opaque_place(const photon_scene *s, uint32_t triangle, const float b[3]) {
+    const vit_attributes *at = s->attributes + triangle;
+    const vit_material *m = s->materials + (at->material & VIT_MATERIAL_INDEX);
+    if (!m->cutout || m->texture == VIT_NONE)
+        return true;
+    const vit_texture *texture = s->atlas->textures + m->texture;
+    const vit_mip *mip = s->atlas->mips + texture->first_mip;
+    const float u =
+        wrap(fmaf(b[2], at->uv[2][0], fmaf(b[1], at->uv[1][0], b[0] * at->uv[0][0])), texture->wrap_u) * (float)mip->width;
+    const float v =
+        wrap(fmaf(b[2], at->uv[2][1], fmaf(b[1], at->uv[1][1], b[0] * at->uv[0][1])), texture->wrap_v) * (float)mip->height;
+    const uint32_t x = (uint32_t)u < mip->width ? (uint32_t)u : mip->width - 1;
+    const uint32_t y = (uint32_t)v < mip->height ? (uint32_t)v : mip->height - 1;
+    return s->atlas->texels[mip->offset + y * mip->pitch + x] >> 31;
+}
+
+bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {
+    const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
+    if (!m->cutout)
+        return true;
+    float weight[3];
+    edge_weights(s->triangles + triangle, origin, direction, weight);
+    const float sum = weight[0] + weight[1] + weight[2], scale = sum == 0.0f ? 0.0f : 1.0f / sum;
+    return photon_opaque_place(s, triangle, (const float[]){weight[0] * scale, weight[1] * scale, weight[2] * scale});
+}

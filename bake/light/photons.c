@@ -1,0 +1,239 @@
+/* The method of kernels/photons.cl, step for step and operation for operation; hits are the kernels', too, of triangles
+ * that Embree proposes (triangle_rays.c). Power: see vit_photon. */
+#include "light/photons.h"
+#include "light/photon_emission.h"
+#include "light/photon_specular.h"
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define CHUNK 1024u /* paths that a thread takes at a time */
+#define MAX_THREADS 256u
+
+typedef struct baking {
+    const photons_input *in;
+    photon_rays rays;
+    vit_photon *slots;         /* zero: empty */
+    uint64_t paths;            /* of all lights */
+    atomic_uint_fast64_t next; /* chunk */
+} baking;
+
+/* The bounce's two random numbers; photon_numbers() of kernels/photons.cl. */
+static void bounce_numbers(uint32_t number, uint32_t hit, bool sequence, float *u, float *v) {
+    static const uint32_t alpha[6] = VIT_BOUNCE_ALPHA;
+    const uint32_t seed = pcg(number ^ pcg(hit * 2u + 1u)), k = hit % 3u * 2u;
+    *u = unit_float(sequence ? number * alpha[k] + pcg(hit * 2u + 1u) : seed);
+    *v = unit_float(sequence ? number * alpha[k + 1u] + pcg(hit * 2u + 2u) : pcg(seed));
+}
+
+/* Of one that lands `way` metres from the surface that reflected it; photon_radius() of kernels/photons.cl. */
+static float photon_radius(float radius, float way, float facing) {
+    const float near = VIT_PHOTON_NEAR * way / float_max(facing, 1e-6f);
+    return float_min(radius, float_max(near, VIT_PHOTON_LEAST * radius));
+}
+
+/* power: W, incident; whole: the scene's radius. As photon_store() of kernels/photons.cl. */
+static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, float whole, uint32_t zone) {
+    const float r2 = radius * radius, inv = 1.0f / r2, spread = float_max(radius, VIT_PHOTON_CAP * whole),
+                scale = 2.0f * PHOTON_INV_PI * (1.0f / (spread * spread));
+    *q = (vit_photon){.position = {p.x, p.y, p.z},
+                      .radius2 = r2,
+                      .direction = {d.x, d.y, d.z},
+                      .inv_radius2 = inv,
+                      .power = {power.x * scale, power.y * scale, power.z * scale},
+                      .zone = zone};
+}
+
+static uint32_t cell_of(const baking *b, vec3 direction, uint32_t triangle, const float weight[3]) {
+    const vit_triangle *t = b->in->triangles + triangle;
+    const uint32_t back = vec3_dot((vec3){t->nx, t->ny, t->nz}, direction) > 0.0f;
+    return b->in->cells ? cells_at(b->in->cells, 2 * triangle + back, weight[1], weight[2]) : 0;
+}
+
+static bool has_power(vec3 p) {
+    return p.x + p.y + p.z > 0.0f;
+}
+
+vec3 photons_shine_on(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
+    const vit_material *m = s->material;
+    vec3 tint = vec3_load(m->specular);
+    vec3 on = shine_mirrored(d, s->normal, s->face);
+    *o = s->position;
+    if (m->kind != VIT_MIRROR) {
+        const bool thin = m->kind == VIT_THIN_GLASS;
+        const shine_paths p = shine_at_glass(d, s->normal, s->face, s->back, thin, m->ior);
+        if (s->back && !thin)
+            *power = vec3_times(*power, shine_absorbed(vec3_load(m->absorption), t));
+        if (u >= p.mirror) {
+            on = p.refracted;
+            *o = s->beyond;
+        } else {
+            on = p.mirrored;
+            tint = (vec3){1.0f, 1.0f, 1.0f};
+        }
+    }
+    *power = vec3_times(*power, tint);
+    return on;
+}
+
+/* Path i of a light; its k-th photon goes to slots[k * paths + i]. A photon is stored at every matt hit but the first hit,
+ * which is direct light. */
+static void trace_path(const baking *b, const photons_light *l, vit_photon *slots, uint32_t i, uint32_t number) {
+    const uint32_t bounces = b->in->bounces;
+    const uint64_t effects = b->in->effects;
+    const emission start = photon_leave(&b->rays, l, i, number);
+    vec3 o = start.origin, d = start.direction, power = start.power;
+    vec3 from = {0.0f, 0.0f, 0.0f}; /* normal of the matt surface that the photon comes from; 0: of none */
+    if (!has_power(power))
+        return;
+    for (uint32_t hit = 0; hit < bounces; hit++) {
+        float t = 0.0f;
+        const uint32_t triangle = photon_rays_nearest(&b->rays, o, d, &t);
+        if (triangle == VIT_NONE)
+            return;
+        float weight_of[3], u, v;
+        const photon_surface s = photon_surface_seen(b->rays.s, o, d, t, triangle, PHOTON_CONE, weight_of);
+        if (b->in->met)
+            __atomic_store_n(&b->in->met[s.material - b->in->materials], 1, __ATOMIC_RELAXED);
+        const bool matt = VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) == VIT_MATTE;
+        if (!matt && !(effects & VIT_BIT(CAUSTICS)))
+            return;
+        if (hit > 0 && matt)
+            store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power,
+                  photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), b->in->radius, cell_of(b, d, triangle, weight_of));
+        if (hit == 0 && !l->area && !l->sky)
+            power = vec3_scale(power, photon_range_factor(&l->light, t * t));
+        bounce_numbers(number, hit, b->in->sequence, &u, &v);
+        if (hit == 0 && l->guide) {
+            u = start.bounce[0];
+            v = start.bounce[1];
+        }
+        if (matt) {
+            const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
+                                                                                         : (vec3){0.0f, 0.0f, 0.0f};
+            power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
+            d = photon_cosine_lobe(s.face, u, v);
+            o = s.position;
+            from = s.face;
+        } else {
+            from = (vec3){0.0f, 0.0f, 0.0f};
+            d = photons_shine_on(&s, d, t, u, &o, &power);
+        }
+        if (!has_power(power))
+            return;
+    }
+}
+
+static void trace_chunk(const baking *b, uint64_t chunk) {
+    const uint64_t last = (chunk + 1) * CHUNK < b->paths ? (chunk + 1) * CHUNK : b->paths;
+    const photons_light *l = b->in->lights;
+    uint64_t first = 0; /* path of light l */
+    for (uint64_t path = chunk * CHUNK; path < last; path++) {
+        while (path - first >= l->paths)
+            first += l++->paths;
+        vit_photon *slots = b->slots + first * (b->in->bounces - 1);
+        trace_path(b, l, slots, (uint32_t)(path - first), (uint32_t)(b->in->first_path + path));
+    }
+}
+
+/* Takes chunks until none is left. Threads touch no slot twice, so their order leaves no trace. */
+static void trace_chunks(baking *b, bool reports) {
+    const uint64_t chunks = (b->paths + CHUNK - 1) / CHUNK;
+    for (;;) {
+        const uint64_t chunk = atomic_fetch_add(&b->next, 1);
+        if (chunk >= chunks)
+            return;
+        trace_chunk(b, chunk);
+        if (reports && b->in->progress)
+            b->in->progress(b->in->user, (double)chunk / (double)chunks);
+    }
+}
+
+static void *worker(void *user) {
+    trace_chunks(user, false);
+    return NULL;
+}
+
+/* On `threads` threads, this one included; on fewer if the system gives no more. */
+static void trace_all(baking *b, unsigned threads) {
+    pthread_t pool[MAX_THREADS];
+    unsigned started = 0;
+    while (started + 1 < threads && pthread_create(pool + started, NULL, worker, b) == 0)
+        started++;
+    trace_chunks(b, true);
+    for (unsigned i = 0; i < started; i++)
+        pthread_join(pool[i], NULL);
+    if (b->in->progress)
+        b->in->progress(b->in->user, 1.0);
+}
+
+/* Moves the photons to the front, in their order; how many there are. */
+static uint32_t compact(vit_photon *slots, size_t count) {
+    uint32_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (slots[i].radius2 > 0.0f)
+            slots[kept++] = slots[i];
+    return kept;
+}
+
+static unsigned thread_count(unsigned asked) {
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    const unsigned threads = asked ? asked : cores > 0 ? (unsigned)cores : 1;
+    return threads < MAX_THREADS ? threads : MAX_THREADS;
+}
+
+/* Counts the paths of all lights. Both they and the slots must stay below 2^32: path numbers and photon indices are 32 bits. */
+static vit_status count_paths(const photons_input *in, uint64_t *paths, vit_text *why) {
+    *paths = 0;
+    for (uint32_t i = 0; i < in->light_count; i++) {
+        if (in->lights[i].paths > PHOTONS_MAX_PATHS) {
+            snprintf(why->text, sizeof why->text, "photons: a light has at most %u paths, still light %u has %u",
+                     PHOTONS_MAX_PATHS, i, in->lights[i].paths);
+            return VIT_BAD_INPUT;
+        }
+        *paths += in->lights[i].paths;
+    }
+    if (*paths + in->first_path <= UINT32_MAX && *paths * (in->bounces - 1) <= UINT32_MAX)
+        return VIT_OK;
+    snprintf(why->text, sizeof why->text, "photons: %llu paths of %u bounces are too many", (unsigned long long)*paths,
+             in->bounces);
+    return VIT_BAD_INPUT;
+}
+
+vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **out, uint32_t *count, vit_text *why) {
+    *out = NULL;
+    *count = 0;
+    const photon_scene s = {.triangles = in->triangles,
+                            .attributes = in->attributes,
+                            .triangle_count = in->triangle_count,
+                            .materials = in->materials,
+                            .atlas = in->atlas,
+                            .ray_offset = in->ray_offset,
+                            .box_pad = in->box_pad,
+                            .effects = in->effects};
+    baking b = {.in = in};
+    if (in->bounces < 2)
+        return VIT_OK;
+    const vit_status status = count_paths(in, &b.paths, why);
+    if (status != VIT_OK || b.paths == 0)
+        return status;
+    threads = thread_count(threads);
+    const size_t slots = (size_t)b.paths * (in->bounces - 1);
+    b.slots = slots <= SIZE_MAX / sizeof *b.slots ? calloc(slots, sizeof *b.slots) : NULL;
+    if (!b.slots || !photon_rays_open(&s, threads, &b.rays)) {
+        snprintf(why->text, sizeof why->text, "photons: %s", b.slots ? "Embree fails" : "out of memory");
+        free(b.slots);
+        return VIT_FAILED;
+    }
+    trace_all(&b, threads);
+    photon_rays_close(&b.rays);
+    *count = compact(b.slots, slots);
+    *out = *count ? realloc(b.slots, *count * sizeof *b.slots) : NULL;
+    if (!*out && *count)
+        *out = b.slots; /* it did not shrink, and is as good */
+    else if (!*count)
+        free(b.slots);
+    return VIT_OK;
+}

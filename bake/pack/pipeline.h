@@ -1,0 +1,94 @@
+/* pipeline.c: from a scene to a pack. pipeline_load() makes what does not depend on the quality block, once; pipeline_pack()
+ * makes a pack of it for one quality block, size and list of frames, as often as needed. */
+#ifndef VIT_BAKE_PIPELINE_H
+#define VIT_BAKE_PIPELINE_H
+
+#include "geometry/atlas.h"
+#include "geometry/bvh.h"
+#include "light/photon_guiding.h"
+#include "pack/pack_write.h"
+#include "pack/planner.h"
+#include "common/progress.h"
+#include "geometry/quantise.h"
+#include "dark_sides/dark_sides.h"
+#include "light/sky.h"
+#include "motion/tracks.h"
+#include "zones/kept.h"
+
+/* Guides, and what they depend on besides the scene. */
+typedef struct pipeline_guides {
+    guides guides;
+    uint32_t width, height, bounces;
+    uint64_t effects;
+} pipeline_guides;
+
+/* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
+typedef struct pipeline {
+    scene scene;
+    bool strict;      /* a missing texture is an error */
+    bool all_formats; /* golden hashes of RGB565 and RGBA32F frames too */
+    unsigned threads; /* 0: all cores; changes no byte */
+    uint32_t
+        device; /* measures bounds and hashes, as in vit_open_info; changes no byte. VIT_DEVICE_HOST has nothing to compile */
+    progress *progress;
+    model model;   /* made by pipeline_load() from here on */
+    tracks tracks; /* at the scene's own size */
+    bvh bvh;
+    geometry geometry;
+    reach reach;
+    atlas atlas;
+    sky sky;
+    zones_kept *kept;
+    pipeline_guides guided; /* of the last pack that guides photons */
+} pipeline;
+
+typedef struct pipeline_choice {
+    scene_quality quality;
+    int width, height;      /* pixels */
+    const uint32_t *frames; /* frames of the scene's path to bake, ascending; NULL: all */
+    uint32_t frame_count;
+} pipeline_choice;
+
+/* What follows from the triangles alone. */
+typedef struct pipeline_shape {
+    model model;
+    bvh bvh;
+    geometry geometry;
+    reach reach;
+} pipeline_shape;
+
+/* A pack and what it was made of. */
+typedef struct pipeline_packed {
+    pipeline_shape coarse; /* with vertices in fewer bits; else empty */
+    const model *model;    /* the shape that was packed: the pipeline's, or `coarse` */
+    const bvh *bvh;
+    const geometry *geometry;
+    const reach *reach;
+    plan plan;
+    tracks tracks; /* of the frames that were chosen */
+    cells cells;   /* zones and effective areas; none without them */
+    zones_found zones;
+    const guides *guides;  /* the pipeline's; NULL: photons are not guided */
+    double guided_gain;    /* how many even paths a guided one stands for, where paths are worth something */
+    vit_emitter *emitters; /* section EMIT */
+    vit_photon *photons;
+    uint32_t *met; /* a word a material: 1 where baked photons met it */
+    vit_gold *gold;
+    pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */
+    void *bytes;            /* the pack */
+    size_t size;
+} pipeline_packed;
+
+/* Reads a scene file (.cfg), or makes a scene for a bare mesh. VIT_BAD_INPUT: also if a mesh or sky that it names is not there.
+ * On failure nothing is left to free. */
+vit_status pipeline_read(const char *path, scene *out, vit_text *why);
+vit_status pipeline_load(pipeline *p, vit_text *why);
+void pipeline_free(pipeline *p);
+
+/* What the scene itself says. */
+pipeline_choice pipeline_default(const pipeline *p);
+/* A chosen frame has the bits that it has in the pack of all frames. On failure nothing is left to free. */
+vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_packed *out, vit_text *why);
+void pipeline_packed_free(pipeline_packed *packed);
+
+#endif

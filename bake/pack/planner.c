@@ -1,0 +1,306 @@
+#include "pack/planner.h"
+#include "pack/copies.h"
+#include "common/strict_math.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PACKET 16u
+#define PLAN_BY_POWER                                                                                                          \
+    0.2 /* of the paths are shared by power where the lights' worth is known: what was not found to matter may still */
+#define TWO_PI 6.283185307179586
+
+/* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost
+ * edges among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc
+ * of the radius is to hold, on average, no fewer photons than make a mottled estimate, and no more than make it smooth: with
+ * ever more photons the radius goes to 0. */
+#define AUTO_OF_WAY 0.2
+#define AUTO_LEAST_PHOTONS 4.0
+#define AUTO_MOST_PHOTONS 150.0
+
+static bool gives_photons(const scene *s, uint32_t light) {
+    return s->automatic || s->lights[light].photons;
+}
+
+/* Mean power over the path, W / 2 pi, summed over channels: what a light's share of the paths follows. */
+static double mean_power(const tracks *t, uint32_t frames, uint32_t light) {
+    double sum = 0;
+    for (uint32_t f = 0; f < frames; f++) {
+        const vit_light *l = &t->lights[(size_t)f * t->light_count + light];
+        const double disc = 0.5 * (double)l->spot_scale * (double)l->spot_scale; /* pi R^2 where others have 2 pi (1 - cos) */
+        sum += ((double)l->intensity[0] + (double)l->intensity[1] + (double)l->intensity[2]) *
+               (l->kind == VIT_LIGHT_DIRECTIONAL ? disc : 1.0 - (double)l->cos_outer);
+    }
+    return sum / frames;
+}
+
+static double sum_of(const double c[3]) {
+    return c[0] + c[1] + c[2];
+}
+
+/* Paths of a light of so much power; worth: its share of what is seen, NULL: not known. */
+static uint32_t share(const scene *s, double power, double total, const double *worth) {
+    const double even = power / total, part = worth ? (1 - PLAN_BY_POWER) * *worth + PLAN_BY_POWER * even : even;
+    return power > 0 ? (uint32_t)ceil(s->quality.photons * part / PACKET) * PACKET : 0;
+}
+
+/* Nobody gets paths where no surface could store a photon. */
+static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, const double *worth, plan *p,
+                              vit_text *why) {
+    const double area = sum_of(p->area.flux) / TWO_PI;
+    const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
+    double total = area + above;
+    uint32_t first = 0;
+    for (uint32_t i = 0; i < t->light_count; i++)
+        total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
+    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0) || !(r->area > 0))
+        return VIT_OK;
+    p->area_paths = share(s, area, total, worth ? worth + t->light_count : NULL);
+    p->sky_paths = share(s, above, total, worth ? worth + t->light_count + 1 : NULL);
+    for (uint32_t i = 0; i < t->light_count; i++) {
+        uint32_t paths =
+            share(s, gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0, total, worth ? worth + i : NULL);
+        if (paths == 0)
+            continue;
+        if (t->still[i]) {
+            p->baked_paths[i] = paths;
+            continue;
+        }
+        for (uint32_t f = 0; f < (uint32_t)s->frames; f++) {
+            vit_light *l = &t->lights[(size_t)f * t->light_count + i];
+            l->path_first = first;
+            l->path_count = paths;
+        }
+        first += paths;
+    }
+    p->scene.paths = first;
+    if (first > 1000000) {
+        snprintf(why->text, sizeof why->text, "quality.photons: at most 1000000 paths in all, with %u lights got %u",
+                 t->light_count, first);
+        return VIT_BAD_INPUT;
+    }
+    return VIT_OK;
+}
+
+static bool is_positive(const float c[3]) {
+    return c[0] > 0 || c[1] > 0 || c[2] > 0;
+}
+
+static void plan_materials(const model *m, const atlas *a, plan *p) {
+    for (int i = 0; i < m->material_count; i++) {
+        const model_material *from = &m->materials[i];
+        vit_material *to = &p->materials[i];
+        memcpy(to->albedo, from->albedo, sizeof to->albedo);
+        memcpy(to->emission, from->emission, sizeof to->emission);
+        to->texture = a->material_texture ? a->material_texture[i] : VIT_NONE;
+        to->cutout = from->cutoff > 0 && to->texture != VIT_NONE;
+        memcpy(to->specular, from->specular, sizeof to->specular);
+        memcpy(to->absorption, from->absorption, sizeof to->absorption);
+        to->kind = from->kind;
+        to->exponent = from->exponent;
+        to->ior = from->ior;
+        to->lights = from->area_light && is_positive(from->emission);
+    }
+}
+
+static uint64_t effects_of_lights(const scene *s, const tracks *t) {
+    uint64_t e = t->light_count > 0 ? VIT_BIT(LIGHTS) : 0;
+    for (size_t i = 0; i < (size_t)s->frames * t->light_count; i++) {
+        const vit_light *l = &t->lights[i];
+        if (l->kind == VIT_LIGHT_SPOT)
+            e |= VIT_BIT(SPOT);
+        if (l->kind == VIT_LIGHT_DIRECTIONAL)
+            e |= VIT_BIT(DIRECTIONAL);
+        if (l->inv_range2 > 0 || l->falloff == VIT_FALLOFF_WINDOW)
+            e |= VIT_BIT(RANGE);
+    }
+    return e;
+}
+
+static uint64_t effects_of_materials(const scene *s, const model *m, const plan *p) {
+    static const uint64_t filters[] = {[FILTER_NEAREST] = VIT_BIT(NEAREST), [FILTER_TRILINEAR] = VIT_BIT(TRILINEAR)};
+    uint64_t e = 0;
+    for (int i = 0; i < m->material_count; i++)
+        if (m->materials[i].triangles > 0)
+            e |= effects_of_material(&p->materials[i]) &
+                 ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
+    return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
+}
+
+static uint64_t effects_of_quality(const scene *s, const plan *p) {
+    bool baked = p->area_paths > 0 || p->sky_paths > 0;
+    for (uint32_t i = 0; i < p->scene.lights; i++)
+        baked |= p->baked_paths[i] > 0;
+    if (p->scene.paths == 0 && !baked)
+        return 0;
+    const scene_quality *q = &s->quality;
+    uint64_t e = VIT_BIT(PHOTONS) | (q->buckets ? VIT_BIT(BUCKETS) : VIT_BIT(LIST));
+    e |= p->scene.paths > 0 ? VIT_BIT(TRACED) : 0;
+    e |= q->buckets && q->raw ? VIT_BIT(RAW_BUCKETS) : 0;
+    e |= q->flattened ? VIT_BIT(FLATTENED) : 0;
+    e |= q->normal_keys ? VIT_BIT(NORMAL_KEYS) : 0;
+    e |= q->zones ? VIT_BIT(ZONES) : 0;
+    e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_BIT(AREA) : 0;
+    e |= q->bounce_sequence ? VIT_BIT(SEQUENCE) : 0;
+    e |= q->indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
+    e |= q->indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
+    return e;
+}
+
+static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
+    vit_scene *c = &p->scene;
+    c->sky_size = round->size;
+    if (p->area.count > 0)
+        c->area_samples = (uint32_t)s->quality.light_samples;
+    if (s->sky.light && sum_of(round->irradiance) > 0)
+        c->sky_samples = (uint32_t)s->quality.sky_samples;
+    return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) |
+           (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
+}
+
+/* kernels/METHODS.md, "Clusters" (16): slices as deep as they are wide. */
+static float slice_scale(const scene *s, const tracks *t) {
+    double rows = (double)s->height / s->quality.tile;
+    return (float)(0.69314718055994531 / strict_log(1.0 + 2.0 * t->tan_half_fov / rows));
+}
+
+/* The grid of small view samples: cubes over the box of the model, with room for what rays leave surfaces by. */
+static void plan_grid(const model *m, vit_scene *c) {
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, m->hi[k] - m->lo[k]);
+    const double margin = 4.0 * (double)c->ray_offset + extent * 0x1p-14, step = (extent + 2.0 * margin) / 65535.0;
+    for (int k = 0; k < 3; k++)
+        c->grid_low[k] = (float)(m->lo[k] - margin);
+    c->grid_step = (float)step;
+}
+
+/* Area that light can reach, m2 (a side counts for itself). */
+static double lit_area(const reach *r) {
+    double lit = r->area - r->dark_front - r->dark_back;
+    return lit > 0 ? lit : r->area;
+}
+
+/* Is there a photon path of any light? */
+static bool has_paths(const tracks *t, const plan *p) {
+    bool some = p->scene.paths > 0 || p->area_paths > 0 || p->sky_paths > 0;
+    for (uint32_t i = 0; i < t->light_count; i++)
+        some = some || p->baked_paths[i] > 0;
+    return some;
+}
+
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r,
+                     const sky *round, unsigned threads, plan *out, vit_text *why) {
+    memset(out, 0, sizeof *out);
+    vit_scene *c = &out->scene;
+    out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
+    out->baked_paths = calloc(t->light_count + 1u, sizeof *out->baked_paths);
+    if (!out->materials || !out->baked_paths) {
+        plan_free(out);
+        snprintf(why->text, sizeof why->text, "out of memory");
+        return VIT_FAILED;
+    }
+    plan_materials(m, a, out); /* 1. constants */
+    c->width = (uint32_t)s->width;
+    c->height = (uint32_t)s->height;
+    c->frames = (uint32_t)s->frames;
+    c->fps = (float)s->fps;
+    c->tile = (uint32_t)s->quality.tile;
+    c->triangles = m->triangles;
+    c->nodes = b->node_count;
+    c->materials = (uint32_t)m->material_count;
+    c->textures = a->texture_count;
+    c->mips = a->mip_count;
+    c->texels = a->texel_count;
+    c->lights = t->light_count;
+    c->bounces = (uint32_t)s->quality.bounces;
+    c->ray_offset = g->ray_offset;
+    c->box_pad = b->box_pad;
+    c->slice_near = (float)t->near;
+    c->slice_scale = slice_scale(s, t);
+    c->slice_count = 4096;
+    for (int k = 0; k < 3; k++) {
+        c->background[k] = (float)s->background[k];
+        c->ambient[k] = (float)s->ambient[k];
+    }
+    c->copies = (uint32_t)s->quality.antialias;
+    if (c->copies > 1)
+        c->contrast = (float)s->quality.antialias_contrast;
+    copies_place(c->copies, s->quality.tent, c->offset);
+    const photon_scene lit = {.triangles = g->triangles,
+                              .attributes = g->attributes,
+                              .triangle_count = m->triangles,
+                              .materials = out->materials,
+                              .atlas = a,
+                              .ray_offset = g->ray_offset,
+                              .box_pad = b->box_pad};
+    sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius); /* 2. lights, and who gets how many photon paths */
+    vit_status status = emitters_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
+    if (status == VIT_OK)
+        status = share_paths(s, t, round, r, NULL, out, why);
+    if (status != VIT_OK) {
+        plan_free(out);
+        return status;
+    }
+    /* 3. effects that the scene calls for, then what `effects` of the scene file says of them */
+    c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
+    c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
+    c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
+    if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
+        c->chain = (uint32_t)s->quality.specular_depth;
+        c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
+    }
+    c->effects |= plan_emitters(s, round, out);
+    if (s->quality.sample_bits == 16) {
+        c->effects |= VIT_BIT(SMALL_SAMPLES);
+        plan_grid(m, c);
+    }
+    for (uint32_t i = 0; i < m->triangles; i++)
+        if (g->attributes[i].material & VIT_TRIANGLE_SMOOTH)
+            c->effects |= VIT_BIT(SMOOTH);
+    if (r->dark_sides > 0)
+        c->effects |= VIT_BIT(DARK_SIDES);
+    effects_force(s, c, &out->effects);
+    out->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? out->area_paths : 0;
+    out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
+    if (!has_paths(t, out)) /* its sources were left out */
+        effects_drop(c, VIT_BIT(PHOTONS));
+    if (c->effects & VIT_BIT(PHOTONS)) { /* 4. the photons' radius */
+        out->lit_area = lit_area(r);
+        out->free_path = r->free_path;
+        double slots = (double)s->quality.photons * (s->quality.bounces - 1);
+        c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : plan_radius(out, slots));
+        c->flatten = s->quality.flattened ? (float)s->quality.flatten : 0.0f;
+    }
+    return VIT_OK;
+}
+
+vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p,
+                      vit_text *why) {
+    const vit_status status = share_paths(s, t, round, r, worth, p, why);
+    p->area_paths = p->scene.effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
+    p->sky_paths = p->scene.effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
+    return status;
+}
+
+double plan_radius(const plan *p, double stored) {
+    const double of_one = sqrt(p->lit_area / (3.14159265358979 * stored)); /* its disc holds one photon on average */
+    const double radius =
+        fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
+    int exponent;
+    const double fraction =
+        frexp(radius, &exponent); /* to 12 bits: rays' lengths may differ in their last bits from processor to processor */
+    return ldexp(floor(fraction * 4096 + 0.5) / 4096, exponent);
+}
+
+bool plan_leaves_area_out(const scene_quality *q) {
+    return q->effective_area && q->buckets && q->zones;
+}
+
+void plan_free(plan *p) {
+    free(p->materials);
+    free(p->baked_paths);
+    emitters_free(&p->area);
+    memset(p, 0, sizeof *p);
+}

@@ -1,0 +1,165 @@
+/* report_text.c: numbers and text as JSON, CSV, HTML and gnuplot want them. */
+#include "report/report_parts.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void text_number(FILE *to, double value, const char *otherwise) {
+    if (!isfinite(value)) {
+        (void)fputs(otherwise, to);
+        return;
+    }
+    char digits[40];
+    for (int precision = 6; precision <= 17; precision++) {
+        (void)snprintf(digits, sizeof digits, "%.*g", precision, value);
+        if (strtod(digits, NULL) == value)
+            break;
+    }
+    (void)fputs(digits, to);
+}
+
+/* Bytes of the UTF-8 character that begins here (RFC 3629, without its overlong forms and surrogates); 0: none does. */
+static uint32_t character(const char *text) {
+    const unsigned char *t = (const unsigned char *)text;
+    if (t[0] < 0x80)
+        return 1;
+    const uint32_t count = t[0] >= 0xC2 && t[0] < 0xE0   ? 2
+                           : t[0] >= 0xE0 && t[0] < 0xF0 ? 3
+                           : t[0] >= 0xF0 && t[0] < 0xF5 ? 4
+                                                         : 0;
+    for (uint32_t i = 1; i < count; i++)
+        if ((t[i] & 0xC0) != 0x80)
+            return 0;
+    if ((t[0] == 0xE0 && t[1] < 0xA0) || (t[0] == 0xED && t[1] >= 0xA0) || (t[0] == 0xF0 && t[1] < 0x90) ||
+        (t[0] == 0xF4 && t[1] >= 0x90))
+        return 0;
+    return count;
+}
+
+/* One character, mended; returns where the next begins. */
+static const char *copy_character(FILE *to, const char *text) {
+    const uint32_t count = character(text);
+    if (count == 0) {
+        (void)fputs("\xEF\xBF\xBD", to);
+        return text + 1;
+    }
+    (void)fwrite(text, 1, count, to);
+    return text + count;
+}
+
+static bool control(char c) {
+    return (unsigned char)c < 0x20 || c == 0x7F;
+}
+
+void text_json(FILE *to, const char *text) {
+    (void)fputc('"', to);
+    while (*text) {
+        if (*text == '"' || *text == '\\')
+            (void)fprintf(to, "\\%c", *text++);
+        else if (control(*text) || *text == '<' || *text == '>' || *text == '&')
+            (void)fprintf(to, "\\u%04x", (unsigned)(unsigned char)*text++);
+        else
+            text = copy_character(to, text);
+    }
+    (void)fputc('"', to);
+}
+
+void text_csv(FILE *to, const char *text) {
+    (void)fputc('"', to);
+    while (*text) {
+        if (*text == '"')
+            (void)fputc('"', to);
+        if (control(*text)) {
+            (void)fputc(' ', to);
+            text++;
+        } else
+            text = copy_character(to, text);
+    }
+    (void)fputc('"', to);
+}
+
+void text_html(FILE *to, const char *text) {
+    while (*text) {
+        const char *entity = *text == '&'     ? "&amp;"
+                             : *text == '<'   ? "&lt;"
+                             : *text == '>'   ? "&gt;"
+                             : *text == '"'   ? "&quot;"
+                             : *text == '\''  ? "&#39;"
+                             : control(*text) ? " "
+                                              : NULL;
+        if (entity) {
+            (void)fputs(entity, to);
+            text++;
+        } else
+            text = copy_character(to, text);
+    }
+}
+
+uint32_t text_length(const char *text) {
+    uint32_t length = 0;
+    for (; *text; length++) {
+        const uint32_t count = character(text);
+        text += count ? count : 1;
+    }
+    return length;
+}
+
+/* Single quotes, between which gnuplot replaces nothing; a quote is doubled. Backquotes and backslashes, which mean something
+ * elsewhere, go. */
+void text_gnuplot(FILE *to, const char *text, uint32_t most) {
+    const bool cut = text_length(text) > most;
+    (void)fputc('\'', to);
+    for (uint32_t i = 0; *text && i < (cut ? most - 1 : most); i++) {
+        if (control(*text) || *text == '`' || *text == '\\') {
+            (void)fputc(' ', to);
+            text++;
+        } else {
+            if (*text == '\'')
+                (void)fputc('\'', to);
+            text = copy_character(to, text);
+        }
+    }
+    (void)fputs(cut ? "\xE2\x80\xA6'" : "'", to);
+}
+
+void text_format(FILE *to, const char *format, double value) {
+    char text[64];
+    if (!isfinite(value)) {
+        (void)fputs("\xE2\x80\x93", to);
+        return;
+    }
+    (void)snprintf(text, sizeof text, format, value);
+    for (const char *c = text; *c; c++)
+        if (*c == '-')
+            (void)fputs("\xE2\x88\x92", to);
+        else
+            (void)fputc(*c, to);
+}
+
+void text_3digits(FILE *to, double value) {
+    const double size = fabs(value);
+    if (!(size >= 1e-5 && size < 1e7)) { /* not a number as well */
+        text_format(to, size > 0 ? "%.2e" : "%.0f", value);
+        return;
+    }
+    const int digits = (int)floor(log10(size * 1.0005)) + 1; /* before the point; what rounds up to 10 has two */
+    char format[16];
+    (void)snprintf(format, sizeof format, "%%.%df", digits < 3 ? 3 - digits : 0);
+    text_format(to, format, value);
+}
+
+void text_ms(FILE *to, double ms) {
+    text_format(to, ms < 0.9995 ? "%.3f" : ms < 9.995 ? "%.2f" : ms < 99.95 ? "%.1f" : "%.0f", ms);
+}
+
+void text_count(FILE *to, uint64_t count) {
+    char digits[24];
+    const int length = snprintf(digits, sizeof digits, "%" PRIu64, count);
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            (void)fputs("\xE2\x80\xAF", to); /* narrow no-break space */
+        (void)fputc(digits[i], to);
+    }
+}
