@@ -112,11 +112,11 @@ static vit_status make_pack(bake *b, vit_text *why) {
 }
 
 /* A line each: name, what it adds, why. */
-static void explain_effects(const pipeline_packed *p, const adds *all) {
+static void explain_effects(const pipeline_packed *p, const effect_costs *all) {
     printf("effects %24s %16s   of %llu bytes and %llu work units a frame\n", "bytes", "work units",
            (unsigned long long)all->device_bytes, (unsigned long long)all->work);
     for (int bit = 0; bit < 64; bit++) {
-        const adds_of *a = &all->effect[bit];
+        const effect_cost *a = &all->effect[bit];
         if (!effects_name(bit))
             continue;
         printf("  %-15s ", effects_name(bit));
@@ -139,8 +139,8 @@ static vit_status explain(bake *b, vit_text *why) {
     if (b->chosen.tried > 0)
         printf("quality \"auto\": { %s}, of %u tried %s\n\n", b->chosen.text, b->chosen.tried,
                b->chosen.right ? "the cheapest that is right" : "the best");
-    adds all;
-    status = adds_measure(&b->packed, p->threads, &b->progress, &all, why);
+    effect_costs all;
+    status = effect_cost_measure(&b->packed, p->threads, &b->progress, &all, why);
     progress_end(&b->progress);
     if (status != VIT_OK)
         return status;
@@ -149,14 +149,14 @@ static vit_status explain(bake *b, vit_text *why) {
     printf("  triangles %u (dropped: %llu of no area, %llu not finite, %llu not triangles), BVH nodes %u, depth %u\n",
            s->triangles, (unsigned long long)b->packed.model->degenerate, (unsigned long long)b->packed.model->not_finite,
            (unsigned long long)b->packed.model->not_triangles, s->nodes, b->packed.bvh->depth);
-    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.reach->area,
-           b->packed.reach->dark_front + b->packed.reach->dark_back);
+    printf("  surface %.4g m2 (both sides), of which %.4g m2 get no light to speak of\n", b->packed.dark_sides->area,
+           b->packed.dark_sides->dark_front + b->packed.dark_sides->dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height,
            100 * p->atlas.occupancy);
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
                (double)s->radius);
-    if (b->packed.guides)
+    if (b->packed.guiding)
         printf("  guided photons: where paths light what is seen, one stands for %.3g even ones\n", b->packed.guided_gain);
     if (s->cells > 0)
         printf("  zones and areas: %u cells, %u groups of them seen from the path, %u patches, "

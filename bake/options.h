@@ -11,8 +11,8 @@ typedef struct options {
     const char *device; /* as vit_device_find() takes it; NULL: the default */
     /* Overrides of the scene file; 0 or NULL: none. */
     int width, height, frames;
-    double fit;      /* milliseconds a frame, 0: none */
-    double fit_work; /* work units a frame, a whole number, 0: none */
+    double fit;      /* milliseconds per frame, 0: none */
+    double fit_work; /* work units per frame, a whole number, 0: none */
     double exposure; /* of all frames; 0 with exposure_given: auto */
     bool exposure_given;
     const char *quality;            /* auto or stated */

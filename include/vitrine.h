@@ -63,7 +63,7 @@ typedef struct vit_open_info {
         *host_isa; /* VIT_DEVICE_HOST: "baseline" or, on x86-64, "avx2", "avx512"; NULL: the best. Changes no bit (tests) */
     uint32_t wide_divide; /* OpenCL, 1: floats are divided as doubles also where the device rounds rightly by itself. Changes no
                              bit (tests) */
-    uint32_t lanes;       /* samples a work-item: 1, 8 or 16; 0: what suits the device. Changes no bit */
+    uint32_t lanes;       /* samples per work-item: 1, 8 or 16; 0: what suits the device. Changes no bit */
     uint32_t group;       /* work-items a work-group: 1..256, a power of two; 0: what suits. Changes no bit */
     vit_format format;
     vit_view view;
@@ -117,7 +117,7 @@ typedef struct vit_statistics {
     uint32_t pass_count;
     const char *pass_names[VIT_MAX_PASSES];
     double pass_ms[VIT_MAX_PASSES]; /* last frame; 0 unless opened with profile */
-    uint32_t lanes;                 /* samples a work-item, in use */
+    uint32_t lanes;                 /* samples per work-item, in use */
     uint32_t work_count;            /* kinds of work; 0 unless opened with count_work */
     const char *work_names[VIT_MAX_WORKS];
     int work_same[VIT_MAX_WORKS];                      /* 1: equal on every device; 0: compare at equal `lanes` only */

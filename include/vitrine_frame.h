@@ -3,7 +3,7 @@
 #ifndef VITRINE_FRAME_H
 #define VITRINE_FRAME_H
 
-/* Framebuffer formats: X(name, what options, reports and golden hashes call it, bytes a pixel, bytes of the words that it is
+/* Framebuffer formats: X(name, what options, reports and golden hashes call it, bytes per pixel, bytes of the words that it is
  * made of, meaning). Words, half words and floats are in the machine's byte order. */
 #define VIT_FORMATS(X)                                                                                                         \
     X(XRGB8888, xrgb8888, 4, 4, "0x00RRGGBB words, sRGB curve")                                                                \

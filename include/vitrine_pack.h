@@ -48,7 +48,7 @@
     X(ATLS, vit_u32, s->texels)                                                                                                \
     X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                \
     X(CELL, vit_cell, s->cells)                                                                                                \
-    X(EMIT, vit_emitter, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                           \
+    X(EMIT, vit_light_sample, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                      \
     X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                  \
     X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)

@@ -40,12 +40,12 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             reach_note(scene, attributes, reached, going, triangle, VIT_REACHED_VIEW);
         surface s = surface_at(SURFACE_SCENE, o, d, l_sel(going, t, L_F(1)), going, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
-        li glass = VIT_EFFECT_GLASS ? going & L_NE(s.shine.kind, L_I((int)VIT_MIRROR)) : L_I(0);
-        lv3 next = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular, from = s.position;
+        li glass = VIT_EFFECT_GLASS ? going & L_NE(s.specular.kind, L_I((int)VIT_MIRROR)) : L_I(0);
+        lv3 next = specular_mirrored(d, s.normal, s.face), tint = s.specular.specular, from = s.position;
         /* 3. Glass: the first one forks into the two layers, later ones take the greater part, the chain's last ray leaves. */
         if (VIT_EFFECT_GLASS && l_any(glass)) {
-            li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
-            shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
+            li thin = L_EQ(s.specular.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
+            specular_paths p = specular_at_glass(d, s.normal, s.face, s.back, thin, s.specular.ior);
             li leaves = i + 1 == scene->chain ? inside | (glass & thin) : L_I(0), caught = leaves & L_GE(p.mirror, L_F(1));
             li forks = glass & ~splits & ~caught & L_LT(p.mirror, L_F(1)),
                mirrored = glass & ~leaves & L_GT(p.mirror, L_F(0.5f));
@@ -53,7 +53,7 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
             lf part = l_sel(forks, l_sel(mirrored, p.mirror, 1.0f - p.mirror), L_F(1));
             li through = glass & ~mirrored;
             splits |= forks;
-            weight = lv3_sel(inside, shine_left(weight, s.shine.absorption, t), weight);
+            weight = lv3_sel(inside, specular_left(weight, s.specular.absorption, t), weight);
             weight = lv3_scale(weight, l_sel(glass, part, L_F(1)));
             next = lv3_sel(through, lv3_sel(caught, d, p.refracted), lv3_sel(glass, p.mirrored, next));
             from = lv3_sel(through, s.beyond, from);

@@ -32,7 +32,7 @@ static inline lf light_left(global const vit_light *light, lf d2) {
 /* View samples as lights see them. */
 typedef struct lit_sample {
     li hit;
-    lv3 p, n, v;      /* position; unit normal, unit direction to where it is seen from (with gloss) */
+    lv3 p, n, v;      /* position; unit normal, unit direction to where it is seen from (with specular reflection) */
     lv3 face;         /* normal of the triangle on the seen side, of any length (with smooth normals) */
     lf exponent;      /* of the lobe */
     lv3 matt, glossy; /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
@@ -53,7 +53,7 @@ static inline lv3 lit_face(global const vit_triangle *triangles, li hit, li tria
 
 static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETERS, global const vit_triangle *triangles,
                                   uint first, li hit, global const uint *hit_triangle, global const float *position,
-                                  global const uint *normal, global const float *rays, global const uint *gloss) {
+                                  global const uint *normal, global const float *rays, global const uint *specular) {
     lit_sample s;
     uint n = scene->samples;
     s.hit = hit;
@@ -63,10 +63,10 @@ static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETER
     if (VIT_EFFECT_SMOOTH)
         s.face = lit_face(triangles, hit, L_AS_INT(L_LOAD(hit_triangle + first)), s.p);
     s.exponent = L_F(1);
-    if (VIT_EFFECT_GLOSS) {
+    if (VIT_EFFECT_SPECULAR) {
         s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1))
                                 : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
-        s.exponent = L_AS_FLOAT(L_LOAD(gloss + n + first));
+        s.exponent = L_AS_FLOAT(L_LOAD(specular + n + first));
     }
     return s;
 }
@@ -84,20 +84,20 @@ static inline lf lit_cosine(const lit_sample *s, lv3 l) {
 static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity) {
     lv3 light = lv3_set(intensity.x * e, intensity.y * e, intensity.z * e);
     s->matt = lv3_set(s->matt.x + light.x, s->matt.y + light.y, s->matt.z + light.z);
-    if (VIT_EFFECT_GLOSS) {
-        lf lobe = shine_lobe(s->n, l, s->v, s->exponent);
+    if (VIT_EFFECT_SPECULAR) {
+        lf lobe = specular_lobe(s->n, l, s->v, s->exponent);
         s->glossy = lv3_along(s->glossy, light, lobe);
     }
 }
 
 /* Adds the samples' reflected light to `direct`. */
 static inline void lit_store(global const vit_scene *scene, const lit_sample *s, uint first, global const uint *albedo,
-                             global const uint *gloss, global float *direct) {
+                             global const uint *specular, global float *direct) {
     uint n = scene->samples;
     lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), out = lv3_load_planes(direct, n, first);
     out = lv3_set(fma(a.x, s->matt.x, out.x), fma(a.y, s->matt.y, out.y), fma(a.z, s->matt.z, out.z));
-    if (VIT_EFFECT_GLOSS) {
-        lv3 g = l_decode_albedo(L_LOAD(gloss + first));
+    if (VIT_EFFECT_SPECULAR) {
+        lv3 g = l_decode_albedo(L_LOAD(specular + first));
         out = lv3_set(fma(g.x, s->glossy.x, out.x), fma(g.y, s->glossy.y, out.y), fma(g.z, s->glossy.z, out.z));
     }
     lv3_store_planes(out, direct, n, first);
@@ -105,8 +105,8 @@ static inline void lit_store(global const vit_scene *scene, const lit_sample *s,
 
 #define LIT_PARAMETERS                                                                                                         \
     global const uint *hit_triangle, global const float *position, global const uint *normal, global const uint *albedo,       \
-        global const float *rays, global const uint *gloss, global float *direct
-#define LIT hit_triangle, position, normal, albedo, rays, gloss, direct
+        global const float *rays, global const uint *specular, global float *direct
+#define LIT hit_triangle, position, normal, albedo, rays, specular, direct
 
 /* Way to a light of a place: unit direction, distance, irradiance a unit of its power. *to: the way, not a direction's. */
 static inline lv3 lit_way(global const vit_scene *scene, global const vit_light *light, const lit_sample *s, lv3 *to, lf *d,
@@ -136,7 +136,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     if (!l_any(hit))
         return;
-    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
     WORK_BEGIN
     for (uint i = 0; i < scene->lights; i++) {
         global const vit_light *light = lights + (size_t)frame * scene->lights + i;
@@ -152,7 +152,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
         WORK_TRACED(r);
         lit_add(&s, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
     }
-    lit_store(scene, &s, first, albedo, gloss, direct);
+    lit_store(scene, &s, first, albedo, specular, direct);
     WORK_END
 }
 #elif VIT_WITH(LIGHTS)
@@ -171,7 +171,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
         if (!l_any(hit))
             continue;
         hits |= 1u << i;
-        s[i] = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
+        s[i] = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
     }
     if (hits == 0)
         return;
@@ -211,22 +211,23 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
     }
     for (uint i = 0; i < VIT_BUNDLE; i++)
         if (hits >> i & 1u)
-            lit_store(scene, s + i, bundle_sample(scene, bundle, i), albedo, gloss, direct);
+            lit_store(scene, s + i, bundle_sample(scene, bundle, i), albedo, specular, direct);
     WORK_END
 }
 #endif
 
 #if VIT_WITH(AREA_LIGHTS)
-#define NEAR_RAYS 64u    /* at least: a strip of light beside a lamp is found by few of them */
+#define NEAR_RAYS 64u    /* at least: a strip of light beside an area light is found by few of them */
 #define NEAR_SHARE 0.01f /* of a white sky's light, that a point must not stand for alone */
 
-/* Lanes for which a point of any set would be much of all light: those whose irradiance from a white sky of the lamp's radiance
- * it is more than NEAR_SHARE of. The same for all sets, so that which of them a pixel has changes nothing but noise. */
-static inline li lit_near(global const vit_emitter *emitters, uint points, const lit_sample *s, float *far2) {
+/* Lanes for which a point of any set would be much of all light: those whose irradiance from a white sky of the area light's
+ * radiance it is more than NEAR_SHARE of. The same for all sets, so that which of them a pixel has changes nothing but noise.
+ */
+static inline li lit_near(global const vit_light_sample *area_lights, uint points, const lit_sample *s, float *far2) {
     li near = L_I(0);
     *far2 = 0;
     for (uint i = 0; i < VIT_PATTERNS * points; i++) {
-        global const vit_emitter *q = emitters + i;
+        global const vit_light_sample *q = area_lights + i;
         lv3 to = lv3_sub(lv3_load(q->position), s->p);
         lf d2 = lv3_dot(to, to);
         *far2 = vit_max(*far2, q->near2);
@@ -278,17 +279,17 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own
 
 /* Adds the light of one of the fixed sets of points, which are directions with `sky`: each pixel of 4 x 4 takes another one of
  * VIT_PATTERNS, and each copy another again. own: the samples' triangles. */
-static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitter *emitters, uint points, int sky, uint first,
-                                   li own, uint copy, lit_sample *s WORK_PASSED) {
-    global const float *p = (global const float *)emitters;
-    const int stride = (int)(sizeof(vit_emitter) / sizeof(float));
+static inline void lit_by_area_lights(RAY_SCENE_PARAMETERS, global const vit_light_sample *area_lights, uint points, int sky,
+                                      uint first, li own, uint copy, lit_sample *s WORK_PASSED) {
+    global const float *p = (global const float *)area_lights;
+    const int stride = (int)(sizeof(vit_light_sample) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
     li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride,
        near = L_I(0);
 #if VIT_WITH(AREA_LIGHTS)
     if (!sky) {
         float far2;
-        near = lit_near(emitters, points, s, &far2);
+        near = lit_near(area_lights, points, s, &far2);
         if (l_any(near))
             lit_by_near(RAY_SCENE, points, set, own, near, far2, s WORK_PASS);
     }
@@ -322,7 +323,7 @@ static inline void lit_by_emitters(RAY_SCENE_PARAMETERS, global const vit_emitte
 }
 
 #if VIT_WITH(AREA_LIGHTS)
-kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters,
+kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
                        LIT_PARAMETERS WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
@@ -331,10 +332,10 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
     if (!l_any(hit))
         return;
     WORK_BEGIN
-    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
-    lit_by_emitters(RAY_SCENE, emitters, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)), round / layers,
-                    &s WORK_PASS);
-    lit_store(scene, &s, first, albedo, gloss, direct);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
+    lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)),
+                       round / layers, &s WORK_PASS);
+    lit_store(scene, &s, first, albedo, specular, direct);
     WORK_END
 }
 #endif

@@ -17,15 +17,15 @@ static inline int view_light(vit_view view) {
 
 /* What a pixel's sample sees, W/(m2 sr), by VIT_VIEW, before exposure. */
 static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo, global const float *direct,
-                                  global const float *indirect, global const uint *gloss, global const float *rays) {
+                                  global const float *indirect, global const uint *specular, global const float *rays) {
     lv3 c = lv3_set(L_F(0), L_F(0), L_F(0));
     int light = view_light((vit_view)VIT_VIEW);
     if (light & VIT_SHOWS_DIRECT)
         c = lv3_load_planes(direct, n, first);
     if (VIT_EFFECT_PHOTONS && (light & VIT_SHOWS_INDIRECT)) {
         lv3 a = l_decode_albedo(L_LOAD(albedo + first)), e = lv3_load_planes(indirect, n, first);
-        if (VIT_EFFECT_GLOSS) /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
-            a = lv3_along(a, l_decode_albedo(L_LOAD(gloss + first)), L_F(1));
+        if (VIT_EFFECT_SPECULAR) /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
+            a = lv3_along(a, l_decode_albedo(L_LOAD(specular + first)), L_F(1));
         a = lv3_scale(a, L_F(VIT_INV_PI));
         c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
     }
@@ -60,15 +60,15 @@ kernel void activate(global const vit_scene *scene, uint round, uint layers, glo
 
 /* Adds what the round's samples see to the film. */
 kernel void expose(global const vit_scene *scene, ROUND_PARAMETERS, global const uint *albedo, global const float *direct,
-                   global const float *indirect, global const uint *gloss, global const float *rays, global float *film,
+                   global const float *indirect, global const uint *specular, global const float *rays, global float *film,
                    global uint *shown) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
     li x, y;
     l_pixel(scene, first, &x, &y);
-    lv3 c = lv3_sel(round_active(scene, first, x, y, active), sample_radiance(n, first, albedo, direct, indirect, gloss, rays),
-                    lv3_set(L_F(0), L_F(0), L_F(0)));
+    lv3 c = lv3_sel(round_active(scene, first, x, y, active),
+                    sample_radiance(n, first, albedo, direct, indirect, specular, rays), lv3_set(L_F(0), L_F(0), L_F(0)));
     if (round > 0)
         c = lv3_along(lv3_load_planes(film, n, first), c, L_F(1));
     lv3_store_planes(c, film, n, first);

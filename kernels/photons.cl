@@ -148,7 +148,7 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
         /* Mirrors and glass store nothing; without caustics they end paths. */
         li matt = alive;
         if ((VIT_EFFECT_MIRROR || VIT_EFFECT_GLASS) && l_any(alive)) {
-            matt &= L_EQ(s.shine.kind, L_I((int)VIT_MATTE));
+            matt &= L_EQ(s.specular.kind, L_I((int)VIT_MATTE));
             if (!VIT_EFFECT_CAUSTICS)
                 alive = matt;
         }
@@ -166,20 +166,20 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             continue;                            /* slots of dead paths are still written, as empty */
         if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
             power = lv3_scale(power, light_left(light, t * t));
-        lv3 reflectance = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo, next;
+        lv3 reflectance = VIT_EFFECT_SPECULAR ? lv3_along(s.albedo, s.specular.specular, L_F(1)) : s.albedo, next;
         lf u, v; /* 4. On from a matt surface, (14) */
         photon_numbers(path, hit_number, &u, &v);
         next = ray_cosine(s.face, u, v);
         o = s.position;
         from = lv3_sel(matt, s.face, lv3_set(L_F(0), L_F(0), L_F(0)));
         if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) { /* 5. On from mirrors and glass */
-            lv3 start = o, on = shine_mirrored(d, s.normal, s.face), tint = s.shine.specular;
-            li glass = alive & ~matt & L_NE(s.shine.kind, L_I((int)VIT_MIRROR));
+            lv3 start = o, on = specular_mirrored(d, s.normal, s.face), tint = s.specular.specular;
+            li glass = alive & ~matt & L_NE(s.specular.kind, L_I((int)VIT_MIRROR));
             if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
-                li thin = L_EQ(s.shine.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
-                shine_paths p = shine_at_glass(d, s.normal, s.face, s.back, thin, s.shine.ior);
+                li thin = L_EQ(s.specular.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
+                specular_paths p = specular_at_glass(d, s.normal, s.face, s.back, thin, s.specular.ior);
                 li through = glass & L_GE(u, p.mirror);
-                power = lv3_sel(inside, shine_left(power, s.shine.absorption, t), power);
+                power = lv3_sel(inside, specular_left(power, s.specular.absorption, t), power);
                 on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
                 start = lv3_sel(through, s.beyond, start);
                 tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);

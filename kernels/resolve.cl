@@ -153,7 +153,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
                     global const uint *hit_triangle, global const float *hit_distance, global const uint *normal,
                     global const uint *albedo, global const float *direct, uint max_nodes, global const float *indirect,
                     global const uint *keys, global const uint *masks, global const uint *prefix, global const uint *list_count,
-                    global const uint *dots, global const vit_photon *photons, global const uint *gloss,
+                    global const uint *dots, global const vit_photon *photons, global const uint *specular,
                     global const float *rays, global const float *film, global const uint *edges, uint pitch,
                     global uchar *framebuffer) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
@@ -174,7 +174,7 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
             c = lv3_scale(c, l_sel(block_bits(edges, first), L_F(vit_div(1.0f, (float)scene->copies)), L_F(1)));
         }
     } else
-        c = sample_radiance(n, first, albedo, direct, indirect, gloss, rays);
+        c = sample_radiance(n, first, albedo, direct, indirect, specular, rays);
     switch ((vit_view)VIT_VIEW) { /* 2. Or the method's insides */
     case VIT_VIEW_final:
     case VIT_VIEW_direct:

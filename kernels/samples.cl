@@ -29,7 +29,7 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
 kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
                     global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
                     global const uint *cells, global float *position, global uint *normal, global uint *albedo,
-                    global float *direct, global uint *accept, global float *inverse_area, global uint *gloss,
+                    global float *direct, global uint *accept, global float *inverse_area, global uint *specular,
                     volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
@@ -67,15 +67,16 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
         lu flags = l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0));
         if (VIT_EFFECT_AREA_LIGHTS && VIT_EFFECT_EMISSION)
-            flags = l_sel_u(L_GT(s.emission.x + s.emission.y + s.emission.z, L_F(0)) & ~s.dark, L_U(VIT_SAMPLE_LAMP), flags);
+            flags =
+                l_sel_u(L_GT(s.emission.x + s.emission.y + s.emission.z, L_F(0)) & ~s.dark, L_U(VIT_SAMPLE_AREA_LIGHT), flags);
         L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | flags, L_U(VIT_SAMPLE_NOTHING)), albedo + first);
-        if (VIT_EFFECT_GLOSS) {
-            L_STORE(l_sel_u(hit, l_encode_albedo(s.shine.specular), L_U(0)), gloss + first);
-            L_STORE(l_sel_u(hit, L_AS_UINT(s.shine.exponent), L_U(0)), gloss + n + first);
+        if (VIT_EFFECT_SPECULAR) {
+            L_STORE(l_sel_u(hit, l_encode_albedo(s.specular.specular), L_U(0)), specular + first);
+            L_STORE(l_sel_u(hit, L_AS_UINT(s.specular.exponent), L_U(0)), specular + n + first);
         }
         lv3 own = s.emission; /* 4. Its own light */
         if (VIT_EFFECT_AMBIENT) {
-            lv3 all = VIT_EFFECT_GLOSS ? lv3_along(s.albedo, s.shine.specular, L_F(1)) : s.albedo;
+            lv3 all = VIT_EFFECT_SPECULAR ? lv3_along(s.albedo, s.specular.specular, L_F(1)) : s.albedo;
             own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y),
                           fma(all.z, L_F(scene->ambient[2]), own.z));
         }
@@ -93,9 +94,9 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         sample_store_position(scene, zero, zero, L_I(0), position, first);
         L_STORE(L_U(0), normal + first);
         L_STORE(L_U(VIT_SAMPLE_NOTHING), albedo + first);
-        if (VIT_EFFECT_GLOSS) {
-            L_STORE(L_U(0), gloss + first);
-            L_STORE(L_U(0), gloss + n + first);
+        if (VIT_EFFECT_SPECULAR) {
+            L_STORE(L_U(0), specular + first);
+            L_STORE(L_U(0), specular + n + first);
         }
         if (VIT_EFFECT_ZONES)
             L_STORE(L_U(0), accept + first);

@@ -9,24 +9,24 @@
            */
 #define SKYLIGHT_FLAT 4.0f /* ray_offsets of height that do not count: what rounding makes of a plane */
 
-/* Irradiance, and with gloss what the lobe reflects, into planes of `skylight`; -1 where there is no sample. */
-kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_emitter *emitters,
+/* Irradiance, and with specular reflection what the lobe reflects, into planes of `skylight`; -1 where there is no sample. */
+kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
                       global const uint *hit_triangle, global const float *position, global const uint *normal,
-                      global const float *rays, global const uint *gloss, global float *skylight WORK_PARAMETERS) {
+                      global const float *rays, global const uint *specular, global float *skylight WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
-    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, gloss);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
     if (l_any(hit)) {
         WORK_BEGIN
-        lit_by_emitters(RAY_SCENE, emitters + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle,
-                        round / layers, &s WORK_PASS);
+        lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle,
+                           round / layers, &s WORK_PASS);
         WORK_END
     }
     s.matt.x = l_sel(hit, s.matt.x, L_F(-1));
     lv3_store_planes(s.matt, skylight, n, first);
-    if (VIT_EFFECT_GLOSS)
+    if (VIT_EFFECT_SPECULAR)
         lv3_store_planes(s.glossy, skylight + 3 * (size_t)n, n, first);
 }
 
@@ -46,7 +46,7 @@ static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, f
 }
 
 kernel void sky_filter(global const vit_scene *scene, global const float *position, global const uint *normal,
-                       global const uint *albedo, global const uint *gloss, global const float *skylight,
+                       global const uint *albedo, global const uint *specular, global const float *skylight,
                        global float *direct) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
@@ -77,7 +77,7 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
             w = l_sel(L_GE(e.x, L_F(0)), w, L_F(0));
             weights += w;
             s.matt = lv3_along(s.matt, e, w);
-            if (VIT_EFFECT_GLOSS) { /* a lobe turns twice as far as its surface: only where that does not turn */
+            if (VIT_EFFECT_SPECULAR) { /* a lobe turns twice as far as its surface: only where that does not turn */
                 w = l_sel(L_EQ(L_AS_INT(its), L_AS_INT(code)), w, L_F(0));
                 lobe_weights += w;
                 global const float *lobe = skylight + 3 * (size_t)n;
@@ -89,6 +89,6 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
     lf scale = l_sel(hit, l_div(1.0f, l_max(weights, L_F(1e-30f))), L_F(0));
     s.matt = lv3_scale(s.matt, scale);
     s.glossy = lv3_scale(s.glossy, l_sel(hit, l_div(1.0f, l_max(lobe_weights, L_F(1e-30f))), L_F(0)));
-    lit_store(scene, &s, first, albedo, gloss, direct);
+    lit_store(scene, &s, first, albedo, specular, direct);
 }
 #endif

@@ -152,9 +152,9 @@ static inline lf sparse_agreement(lv3 q, lv3 t, lv3 p, lv3 s, lf per_step, lf *o
     return l_max(fma(-steps, steps, L_F(1)), L_F(0)) * (cosine * cosine);
 }
 
-/* Light between a lamp and a surface close to it changes within their distance, which may be much less than a step: where a
- * sample agrees with one that is a lamp while it is none, or the other way round, but lies beside its plane, it is estimated
- * after all. A lamp in the very plane of its ceiling has no gap. */
+/* Light between an area light and a surface close to it changes within their distance, which may be much less than a step:
+ * where a sample agrees with one that is an area light while it is none, or the other way round, but lies beside its plane, it
+ * is estimated after all. An area light in the very plane of its ceiling has no gap. */
 #define SPARSE_FLAT 4.0f /* ray_offsets off the plane that do not count: what rounding makes of it */
 
 /* Lanes of samples marked `mark` that lie across such a gap from a sample marked `other`. */
@@ -163,9 +163,9 @@ static inline li sparse_gap(global const vit_scene *scene, li mark, li other, lf
     return L_NE(mark, other) & L_GT(agreement, L_F(0)) & L_GT(fabs(off), L_F(flat));
 }
 
-/* -1 where samples are lamps. */
-static inline li sparse_lamps(lu albedo) {
-    return L_NE(L_AS_INT(albedo & VIT_SAMPLE_LAMP), L_I(0)) & L_EQ(L_AS_INT(albedo & VIT_SAMPLE_DARK), L_I(0));
+/* -1 where samples are area lights. */
+static inline li sparse_area_lights(lu albedo) {
+    return L_NE(L_AS_INT(albedo & VIT_SAMPLE_AREA_LIGHT), L_I(0)) & L_EQ(L_AS_INT(albedo & VIT_SAMPLE_DARK), L_I(0));
 }
 
 /* Number of the block x, y of the picture, or VIT_NONE beyond it. */
@@ -195,9 +195,9 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
     uint around[4];
     for (uint k = 0; k < 4; k++)
         around[k] = sparse_block(scene, bx + (k & 1), by + (k >> 1));
-    uint lamps = 0; /* bit k: sample k of the block is a lamp; coarse samples may miss it */
+    uint area_lights = 0; /* bit k: sample k of the block is an area light; coarse samples may miss it */
     for (uint at = 0; VIT_EFFECT_AREA_LIGHTS && at < 16; at += VIT_LANES)
-        lamps |= l_bits(sparse_lamps(L_LOAD(albedo + block * 16 + at))) << at;
+        area_lights |= l_bits(sparse_area_lights(L_LOAD(albedo + block * 16 + at))) << at;
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
         li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
@@ -205,7 +205,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)),
            per_step = l_div(1.0f, l_max(depth * step, L_F(1e-30f)));
-        li lamp = -((L_I((int)lamps) >> pixel) & 1), apart = L_I(0);
+        li area_light = -((L_I((int)area_lights) >> pixel) & 1), apart = L_I(0);
         lf weights = L_F(0), off, x = L_FROM_INT(pixel & 3) * vit_div(1.0f, SPARSE_STEP),
            y = L_FROM_INT(pixel >> 2) * vit_div(1.0f, SPARSE_STEP);
         for (uint cy = 0; cy <= SPARSE_ROW; cy++)
@@ -218,18 +218,18 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
                 lf w = tent * sparse_agreement(lv3_load(c + 3), lv3_load(c + 6), p, s, per_step, &off);
                 uint sample = from * 16 + cy % SPARSE_ROW * (SPARSE_STEP * 4) + cx % SPARSE_ROW * SPARSE_STEP;
                 if (VIT_EFFECT_AREA_LIGHTS)
-                    apart |= sparse_gap(scene, lamp, sparse_lamps(L_U(albedo[sample])), w, off);
+                    apart |= sparse_gap(scene, area_light, sparse_area_lights(L_U(albedo[sample])), w, off);
                 if (VIT_EFFECT_ZONES) /* the same photons count for both */
                     w = l_sel(L_EQ(own.accept, L_I((int)accept[sample])), w, L_F(0));
                 sum = lv3_along(sum, lv3_load(c), w);
                 weights += w;
             }
-        if (VIT_EFFECT_AREA_LIGHTS && lamps != 0 &&
-            lamps != 0xffffu) { /* the block's first lamp, for those that it is none of */
-            li first_lamp = L_I((int)(block * 16 + 31u - (uint)clz(lamps & (~lamps + 1u))));
-            lf w = sparse_agreement(sample_position_of(scene, position, first_lamp),
-                                    l_decode_normal(l_gather_u(normal, first_lamp)), p, s, per_step, &off);
-            apart |= sparse_gap(scene, lamp, L_I(-1), w, off);
+        if (VIT_EFFECT_AREA_LIGHTS && area_lights != 0 &&
+            area_lights != 0xffffu) { /* the block's first area light, for those that it is none of */
+            li first_area_light = L_I((int)(block * 16 + 31u - (uint)clz(area_lights & (~area_lights + 1u))));
+            lf w = sparse_agreement(sample_position_of(scene, position, first_area_light),
+                                    l_decode_normal(l_gather_u(normal, first_area_light)), p, s, per_step, &off);
+            apart |= sparse_gap(scene, area_light, L_I(-1), w, off);
         }
         li good = has & L_GE(weights, L_F(SPARSE_LEAST)) & ~apart;
         lf scale = l_sel(good, l_div(1.0f, l_max(weights, L_F(SPARSE_LEAST))), L_F(0));

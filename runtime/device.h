@@ -18,7 +18,7 @@ typedef struct vit_step {
 typedef struct vit_device_setup {
     const vit_open_info *info; /* device, threads, host_isa, wide_divide, profile, framebuffer */
     const vit_pack *pack;      /* in the machine's byte order */
-    const vit_limits *limits;
+    const vit_launch *launch;
     void *state, *memory; /* in the arena, 64-byte aligned, state zeroed: state_bytes, memory_bytes() */
 } vit_device_setup;
 
@@ -26,10 +26,10 @@ typedef struct vit_device {
     size_t state_bytes;
     /* Bytes of buffers that the arena must hold; in_place: the caller's framebuffer is used. SIZE_MAX: more than there can be.
      */
-    size_t (*memory_bytes)(const vit_scene *s, const vit_limits *l, int in_place);
+    size_t (*memory_bytes)(const vit_scene *s, const vit_launch *l, int in_place);
     /* Sets what in `l` is 0: lanes and group sizes that suit the device. Changes no bit of any frame. VIT_FAILED: no such
      * device. */
-    vit_status (*suit)(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why);
+    vit_status (*suit)(const vit_open_info *info, const vit_scene *s, vit_launch *l, vit_text *why);
     /* After an error close() is still to be called. All buffers begin as zeros or with the pack's data. */
     vit_status (*open)(const vit_device_setup *setup, vit_text *why);
     void (*close)(void *state);

@@ -10,7 +10,7 @@
 
 typedef struct host_device {
     const vit_scene *scene;
-    const vit_limits *limits;
+    const vit_launch *launch;
     const host_program *program;
     host_call call;
     host_pool pool;
@@ -32,7 +32,7 @@ static int is_own(uint32_t b, int in_place) {
     return vit_buffer_sections[b] == VIT_SECTION_NONE && !(b == B_framebuffer && in_place);
 }
 
-static size_t memory_bytes(const vit_scene *s, const vit_limits *l, int in_place) {
+static size_t memory_bytes(const vit_scene *s, const vit_launch *l, int in_place) {
     uint64_t sum = 0; /* of less than 2^6 buffers, each less than 2^40 */
     for (uint32_t b = 0; b < B_COUNT; b++)
         sum += is_own(b, in_place) ? round_up(vit_buffer_bytes(b, s, l)) : 0;
@@ -46,7 +46,7 @@ static void list_isas(vit_text *why) {
         n += (size_t)snprintf(why->text + n, sizeof why->text - n, "%s%s", i == 0 ? "" : ", ", isa);
 }
 
-static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
+static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_launch *l, vit_text *why) {
     const host_program *program = vit_host_find(info->host_isa, l->lanes);
     if (info->wide_divide)
         return vit_fail(why, VIT_USAGE, "device host: wide_divide is for devices of OpenCL");
@@ -72,7 +72,7 @@ static void place_buffers(host_device *d, const vit_device_setup *setup) {
     char *at = setup->memory;
     void *framebuffer = setup->info->framebuffer;
     for (uint32_t b = 0; b < B_COUNT; b++) {
-        size_t bytes = (size_t)vit_buffer_bytes(b, d->scene, d->limits);
+        size_t bytes = (size_t)vit_buffer_bytes(b, d->scene, d->launch);
         vit_section section = vit_buffer_sections[b];
         if (bytes == 0)
             continue;
@@ -91,9 +91,9 @@ static void place_buffers(host_device *d, const vit_device_setup *setup) {
 
 static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
     host_device *d = setup->state;
-    const vit_limits *l = setup->limits;
+    const vit_launch *l = setup->launch;
     const vit_scene *s = d->scene = setup->pack->scene;
-    d->limits = l;
+    d->launch = l;
     d->profile = setup->info->profile != 0;
     d->program = vit_host_find(setup->info->host_isa, l->lanes);
     d->call = (host_call){.run = l->run,
@@ -137,12 +137,12 @@ static vit_status run(void *state, const vit_step *step, vit_text *why) {
     double began = d->profile ? now_ms() : 0;
     size_t local, items;
     (void)why;
-    vit_pass_size(p, d->scene, d->limits, step->level, &local, &items);
+    vit_pass_size(p, d->scene, d->launch, step->level, &local, &items);
     d->call.pass = step->pass;
     d->call.level = step->level;
     d->call.frame = step->frame;
     d->call.round = step->round;
-    d->call.chunks = vit_pass_chunks(p, d->limits, step->level);
+    d->call.chunks = vit_pass_chunks(p, d->launch, step->level);
     vit_host_pool_run(&d->pool, run_items, d, items);
     if (d->profile)
         d->pass_ms[step->pass] += now_ms() - began;
@@ -152,7 +152,7 @@ static vit_status run(void *state, const vit_step *step, vit_text *why) {
 static vit_status clear(void *state, vit_buffer b, vit_text *why) {
     host_device *d = state;
     (void)why;
-    memset(d->call.buffers[b], 0, (size_t)vit_buffer_bytes(b, d->scene, d->limits));
+    memset(d->call.buffers[b], 0, (size_t)vit_buffer_bytes(b, d->scene, d->launch));
     return VIT_OK;
 }
 
@@ -166,7 +166,7 @@ static vit_status read_buffer(void *state, vit_buffer b, size_t bytes, void *out
 static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
     const host_device *d = state;
     const char *from = d->call.buffers[B_framebuffer];
-    const size_t row = vit_row_bytes(d->scene, d->limits), pitch = vit_pitch_bytes(d->limits);
+    const size_t row = vit_row_bytes(d->scene, d->launch), pitch = vit_pitch_bytes(d->launch);
     (void)why;
     if (!framebuffer || (framebuffer == from && stride == pitch))
         return VIT_OK;

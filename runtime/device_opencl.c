@@ -120,7 +120,7 @@ int vit_opencl_is(uint32_t index, int gpu) {
     return (type & (gpu ? CL_DEVICE_TYPE_GPU : CL_DEVICE_TYPE_CPU)) != 0;
 }
 
-static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits *l, vit_text *why) {
+static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_launch *l, vit_text *why) {
     cl_device_id id;
     cl_device_type type = CL_DEVICE_TYPE_CPU;
     cl_uint width = 8;
@@ -149,7 +149,7 @@ static vit_status suit(const vit_open_info *info, const vit_scene *s, vit_limits
 }
 
 /* Options of the one program: exactly this effect set, view, format and width. */
-static int build_options(char *text, size_t size, const vit_limits *l, int wide_divide) {
+static int build_options(char *text, size_t size, const vit_launch *l, int wide_divide) {
     int n = snprintf(text, size,
                      "-cl-std=CL1.2 %s -DVIT_LANES=%u -DVIT_VIEW=%d -DVIT_FORMAT=%d "
                      "-DVIT_COUNT_WORK=%d",
@@ -192,7 +192,7 @@ static void say_where_pocl_writes(const vit_opencl *d, vit_text *why) {
                  "; PoCL compiles in its cache: set POCL_CACHE_DIR to a folder with room, or take the device host");
 }
 
-static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group, vit_text *why) {
+static vit_status build(vit_opencl *d, const vit_launch *l, uint32_t asked_group, vit_text *why) {
     char options[4096];
     cl_int e;
     if (!build_options(options, sizeof options, l, d->wide_divide))
@@ -224,7 +224,7 @@ static vit_status build(vit_opencl *d, const vit_limits *l, uint32_t asked_group
 static vit_status clear(void *state, vit_buffer b, vit_text *why) {
     static const uint32_t zero = 0;
     vit_opencl *d = state;
-    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
+    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->launch);
     cl_int e = clEnqueueFillBuffer(d->queue, d->buffers[b], &zero, sizeof zero, 0, (size_t)bytes, 0, NULL, NULL);
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueFillBuffer", e);
 }
@@ -232,7 +232,7 @@ static vit_status clear(void *state, vit_buffer b, vit_text *why) {
 /* Data of the pack is used in place where device and host share memory; the rest starts as zeros, so that traces repeat, but
  * for the framebuffer: each frame writes all pixels, and what lies between the rows of the caller's is not ours. */
 static vit_status make_buffer(vit_opencl *d, uint32_t b, void *framebuffer, vit_text *why) {
-    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->limits);
+    uint64_t bytes = vit_buffer_bytes(b, d->scene, d->launch);
     vit_section section = vit_buffer_sections[b];
     cl_int e;
     if (bytes == 0)
@@ -261,7 +261,7 @@ static vit_status upload_baked_photons(vit_opencl *d, vit_text *why) {
 
 /* Arguments that never change; frame, round and level are set when a pass is enqueued. */
 static vit_status set_arguments(vit_opencl *d, vit_text *why) {
-    const vit_limits *l = d->limits;
+    const vit_launch *l = d->launch;
     for (uint32_t p = 0; p < vit_pass_count; p++) {
         if (!d->kernels[p])
             continue;
@@ -319,7 +319,7 @@ static vit_status open_on(vit_opencl *d, const vit_device_setup *setup, vit_text
     d->queue = clCreateCommandQueue(d->context, d->id, d->profile ? CL_QUEUE_PROFILING_ENABLE : 0, &e);
     if (e != CL_SUCCESS)
         return failed(why, "clCreateCommandQueue", e);
-    vit_status status = build(d, d->limits, setup->info->group, why);
+    vit_status status = build(d, d->launch, setup->info->group, why);
     for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
         status = make_buffer(d, b, setup->info->framebuffer, why);
     if (status == VIT_OK)
@@ -335,7 +335,7 @@ static vit_status open_device(const vit_device_setup *setup, vit_text *why) {
     vit_opencl *d = setup->state;
     d->pack = setup->pack;
     d->scene = setup->pack->scene;
-    d->limits = setup->limits;
+    d->launch = setup->launch;
     d->profile = setup->info->profile != 0;
     vit_status status = find(setup->info->device, &d->id, why);
     return status == VIT_OK ? open_on(d, setup, why) : status;
@@ -380,7 +380,7 @@ static vit_status set_varying(vit_opencl *d, const vit_step *step, vit_text *why
         uint32_t value = a == V_frame   ? step->frame
                          : a == V_round ? step->round
                          : a == V_level ? step->level
-                                        : vit_pass_chunks(&vit_passes[pass], d->limits, step->level);
+                                        : vit_pass_chunks(&vit_passes[pass], d->launch, step->level);
         cl_int e = clSetKernelArg(d->kernels[pass], i, sizeof value, &value);
         if (e != CL_SUCCESS)
             return failed(why, vit_passes[pass].name, e);
@@ -393,7 +393,7 @@ static vit_status run(void *state, const vit_step *step, vit_text *why) {
     const uint32_t pass = step->pass;
     size_t local, global;
     cl_event *event = NULL;
-    vit_limits l = *d->limits;
+    vit_launch l = *d->launch;
     l.group = lesser(l.group, d->most[pass]);
     l.scan_group = lesser(l.scan_group, d->most[pass]);
     l.splat_group = lesser(l.splat_group, d->most[pass]);
@@ -430,9 +430,9 @@ static cl_int show_in_place(vit_opencl *d, size_t bytes) {
 static vit_status show(void *state, void *framebuffer, size_t stride, vit_text *why) {
     vit_opencl *d = state;
     const vit_scene *s = d->scene;
-    const size_t row = vit_row_bytes(s, d->limits), pitch = vit_pitch_bytes(d->limits), zero[3] = {0, 0, 0},
+    const size_t row = vit_row_bytes(s, d->launch), pitch = vit_pitch_bytes(d->launch), zero[3] = {0, 0, 0},
                  region[3] = {row, s->height, 1};
-    const size_t bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, d->limits);
+    const size_t bytes = (size_t)vit_buffer_bytes(B_framebuffer, s, d->launch);
     cl_int e;
     if (!framebuffer)
         e = clFinish(d->queue);
@@ -462,7 +462,7 @@ static void times(void *state, double *pass_ms) {
 }
 
 /* Buffers are OpenCL's. */
-static size_t memory_bytes(const vit_scene *s, const vit_limits *l, int in_place) {
+static size_t memory_bytes(const vit_scene *s, const vit_launch *l, int in_place) {
     (void)s;
     (void)l;
     (void)in_place;

@@ -9,7 +9,7 @@
 typedef struct vit_opencl {
     const vit_pack *pack;
     const vit_scene *scene;
-    const vit_limits *limits;
+    const vit_launch *launch;
     cl_device_id id;
     cl_context context;
     cl_command_queue queue;

@@ -48,7 +48,7 @@ vit_status vit_faults(vit *v, vit_fault out[VIT_MAX_FAULTS], uint32_t *count, in
     memset(words, 0, sizeof words);
     *count = 0;
     *lost = 0;
-    if (vit_buffer_called(B_faults, &v->limits))
+    if (vit_buffer_called(B_faults, &v->launch))
         status = v->device->read(v->state, B_faults, sizeof words, words, why);
     if (status == VIT_OK)
         add_devices(words, out, count, lost);

@@ -30,8 +30,8 @@ static vit_status walk_round(vit *v, uint32_t frame, uint32_t round, after_fn *a
             uint32_t level = vit_passes[p].repeat == UPWARD ? levels - 1 - i : i;
             for (uint32_t row = p; row < end; row++) {
                 const vit_pass *pass = &vit_passes[row];
-                if (!vit_pass_called(row, &v->limits) || !vit_pass_at_level(pass, s, &v->limits, level) ||
-                    !vit_pass_in_round(pass, &v->limits, round))
+                if (!vit_pass_called(row, &v->launch) || !vit_pass_at_level(pass, s, &v->launch, level) ||
+                    !vit_pass_in_round(pass, &v->launch, round))
                     continue;
                 vit_status status = run_step(v, &(vit_step){row, level, frame, round}, after, user, why);
                 if (status != VIT_OK)
@@ -44,11 +44,11 @@ static vit_status walk_round(vit *v, uint32_t frame, uint32_t round, after_fn *a
 
 static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
     vit_status status = VIT_OK;
-    if (v->limits.effects & ON_WORK) /* counted from nothing each frame */
+    if (v->launch.effects & ON_WORK) /* counted from nothing each frame */
         status = v->device->clear(v->state, B_work, why);
-    if (status == VIT_OK && (v->limits.effects & ON_REACH))
+    if (status == VIT_OK && (v->launch.effects & ON_REACH))
         status = v->device->clear(v->state, B_reached, why);
-    for (uint32_t round = 0; round < v->limits.rounds && status == VIT_OK; round++)
+    for (uint32_t round = 0; round < v->launch.rounds && status == VIT_OK; round++)
         status = walk_round(v, frame, round, after, user, why);
     return status;
 }
@@ -67,7 +67,7 @@ vit_status vit_frame(vit *v, uint32_t index, void *framebuffer, size_t stride, v
     vit_text unused = {""};
     why = why ? why : &unused;
     vit_status status = check_index(v, index, why);
-    if (status == VIT_OK && framebuffer && stride < vit_row_bytes(v->pack.scene, &v->limits))
+    if (status == VIT_OK && framebuffer && stride < vit_row_bytes(v->pack.scene, &v->launch))
         status = vit_fail(why, VIT_USAGE, "stride %zu is less than a row", stride);
     if (status == VIT_OK)
         status = vit_walk(v, index, why);
@@ -89,7 +89,7 @@ typedef struct trace {
 
 /* Rows one behind another: what lies between those of the caller's framebuffer is nobody's. Returns bytes. */
 static size_t pack_rows(const vit *v, char *pixels) {
-    const size_t row = vit_row_bytes(v->pack.scene, &v->limits), pitch = vit_pitch_bytes(&v->limits);
+    const size_t row = vit_row_bytes(v->pack.scene, &v->launch), pitch = vit_pitch_bytes(&v->launch);
     for (size_t y = 1; y < v->pack.scene->height && pitch != row; y++)
         memmove(pixels + y * row, pixels + y * pitch, row);
     return row * v->pack.scene->height;
@@ -99,7 +99,7 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
     trace *t = user;
     const vit_pass *pass = &vit_passes[step->pass];
     for (uint32_t b = 0; b < B_COUNT; b++) {
-        uint64_t bytes = vit_buffer_bytes(b, v->pack.scene, &v->limits);
+        uint64_t bytes = vit_buffer_bytes(b, v->pack.scene, &v->launch);
         if (!(pass->writes >> b & 1) || bytes == 0)
             continue;
         if (bytes > t->size)
@@ -110,12 +110,12 @@ static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text 
         if (b == B_framebuffer)
             bytes = pack_rows(v, t->scratch);
         char name[96], round[16] = "", level[16] = "";
-        if (v->limits.rounds > 1)
+        if (v->launch.rounds > 1)
             snprintf(round, sizeof round, "{%u}", step->round);
         if (pass->repeat != ONCE)
             snprintf(level, sizeof level, "[%u]", step->level);
         snprintf(name, sizeof name, "%s%s%s.%s", pass->name, round, level, vit_buffer_names[b]);
-        t->pass(t->user, name, vit_hash_words(t->scratch, (size_t)bytes, vit_buffer_word(b, &v->limits)));
+        t->pass(t->user, name, vit_hash_words(t->scratch, (size_t)bytes, vit_buffer_word(b, &v->launch)));
     }
     return VIT_OK;
 }

@@ -44,8 +44,8 @@ static vit_status check_framebuffer(const vit_open_info *info, const vit_scene *
                     pitch, (unsigned long long)need, info->framebuffer_size);
 }
 
-static vit_limits limits_of(const vit_open_info *info, const vit_scene *s) {
-    vit_limits l = {
+static vit_launch launch_of(const vit_open_info *info, const vit_scene *s) {
+    vit_launch l = {
         .effects = s->effects, .max_nodes = s->max_nodes, .max_list = s->max_list, .format = info->format, .view = info->view};
     l.lanes = info->lanes;
     l.group = info->group;
@@ -98,13 +98,13 @@ static void swap_sections(vit_pack *pack, char *to) {
 }
 
 /* The arena: vit, the device's state, swapped sections, the device's memory. SIZE_MAX: more than there can be. */
-static size_t host_bytes(const vit_device *d, const vit_pack *pack, const vit_limits *l, int in_place) {
+static size_t host_bytes(const vit_device *d, const vit_pack *pack, const vit_launch *l, int in_place) {
     size_t own = round_up(sizeof(vit)) + round_up(d->state_bytes) + swapped_bytes(pack);
     size_t memory = d->memory_bytes(pack->scene, l, in_place);
     return memory <= SIZE_MAX - own ? own + memory : SIZE_MAX;
 }
 
-static void describe(const vit_device *d, const vit_pack *pack, const vit_limits *l, int in_place, vit_requirements *need) {
+static void describe(const vit_device *d, const vit_pack *pack, const vit_launch *l, int in_place, vit_requirements *need) {
     const vit_scene *s = pack->scene;
     memset(need, 0, sizeof *need);
     need->width = s->width;
@@ -127,7 +127,7 @@ static void describe(const vit_device *d, const vit_pack *pack, const vit_limits
 }
 
 /* What vit_require() and vit_open() begin with. */
-static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits *l, const vit_device **device, vit_text *why) {
+static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_launch *l, const vit_device **device, vit_text *why) {
     vit_status status = check_options(info, why);
     if (status == VIT_OK)
         status = vit_device_of(info->device, device, why);
@@ -136,7 +136,7 @@ static vit_status look_at(const vit_open_info *info, vit_pack *pack, vit_limits 
     if (status == VIT_OK)
         status = check_framebuffer(info, pack->scene, why);
     if (status == VIT_OK)
-        *l = limits_of(info, pack->scene);
+        *l = launch_of(info, pack->scene);
     return status;
 }
 
@@ -144,7 +144,7 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
     vit_text unused = {""};
     why = why ? why : &unused;
     vit_pack pack;
-    vit_limits l;
+    vit_launch l;
     const vit_device *device;
     vit_status status = look_at(info, &pack, &l, &device, why);
     if (status == VIT_OK)
@@ -153,7 +153,7 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
 }
 
 /* Lays vit, the device's state and what was swapped out in the arena. */
-static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_limits *l, const vit_device *device,
+static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_launch *l, const vit_device *device,
                              vit **out, vit_device_setup *setup, vit_text *why) {
     size_t need = host_bytes(device, pack, l, info->framebuffer != NULL);
     if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need)
@@ -164,11 +164,11 @@ static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, co
     char *swapped = (char *)info->arena + round_up(sizeof *v) + round_up(device->state_bytes);
     if (VIT_BIG_ENDIAN)
         swap_sections(&v->pack, swapped);
-    v->limits = *l;
+    v->launch = *l;
     v->device = device;
     v->state = (char *)info->arena + round_up(sizeof *v);
     v->profile = info->profile != 0;
-    *setup = (vit_device_setup){info, &v->pack, &v->limits, v->state, swapped + swapped_bytes(pack)};
+    *setup = (vit_device_setup){info, &v->pack, &v->launch, v->state, swapped + swapped_bytes(pack)};
     *out = v;
     return VIT_OK;
 }
@@ -195,7 +195,7 @@ vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     vit_text unused = {""};
     why = why ? why : &unused;
     vit_pack pack;
-    vit_limits l;
+    vit_launch l;
     vit_device_setup setup;
     const vit_device *device;
     vit *v = NULL;
@@ -224,9 +224,9 @@ void vit_close(vit *v) {
 
 uint64_t vit_golden(const vit *v, uint32_t index) {
     const vit_gold *golds = v->pack.section[VIT_SECTION_GOLD];
-    if (!golds || index >= v->pack.scene->frames || v->limits.view != VIT_VIEW_final)
+    if (!golds || index >= v->pack.scene->frames || v->launch.view != VIT_VIEW_final)
         return 0;
     vit_gold gold = golds[index];
-    const uint32_t *h = vit_gold_hash(&gold, v->limits.format);
+    const uint32_t *h = vit_gold_hash(&gold, v->launch.format);
     return (uint64_t)h[1] << 32 | h[0];
 }

@@ -122,7 +122,7 @@ vit_status vit_pack_check_ATTR(const vit_pack *p, vit_text *why) {
     return VIT_OK;
 }
 
-static const char *shine_fault(const vit_material *m) {
+static const char *specular_fault(const vit_material *m) {
     if (m->kind > VIT_THIN_GLASS)
         return "unknown kind";
     if (!all_in_range(m->specular, 3, 0.0f, 1.0f))
@@ -155,7 +155,7 @@ vit_status vit_pack_check_MATL(const vit_pack *p, vit_text *why) {
             return vit_pack_refuse(why, "section MATL: material %u: cutout must be 0 or 1, got %u", i, m->cutout);
         if (m->cutout && m->texture == VIT_NONE)
             return vit_pack_refuse(why, "section MATL: material %u: cut out by no texture", i);
-        const char *fault = shine_fault(m);
+        const char *fault = specular_fault(m);
         if (fault)
             return vit_pack_refuse(why, "section MATL: material %u: %s", i, fault);
     }
@@ -230,10 +230,10 @@ vit_status vit_pack_check_CELL(const vit_pack *p, vit_text *why) {
 
 vit_status vit_pack_check_EMIT(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
-    const vit_emitter *emitters = p->section[VIT_SECTION_EMIT];
+    const vit_light_sample *area_lights = p->section[VIT_SECTION_EMIT];
     const uint64_t area = VIT_PATTERNS * (uint64_t)s->area_samples, count = area + VIT_PATTERNS * (uint64_t)s->sky_samples;
     for (uint64_t i = 0; i < count; i++) {
-        const vit_emitter *e = VIT_RECORD(vit_emitter, emitters, i);
+        const vit_light_sample *e = VIT_RECORD(vit_light_sample, area_lights, i);
         const float *unit = i < area ? e->normal : e->position;
         if (!all_finite(e->position, 3) || !is_unit(unit))
             return vit_pack_refuse(why,

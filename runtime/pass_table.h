@@ -28,16 +28,16 @@
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \
       ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                                  \
     X(samples, ALWAYS, EACH, PER_SAMPLE, ONCE,                                                                                 \
-      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(gloss), ARGS_SURFACE, ARGS_ROUND,      \
+      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular), ARGS_SURFACE, ARGS_ROUND,   \
       B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), B(albedo), B(direct),     \
-      B(accept), B(inverse_area), B(gloss), B(reached), ARGS_WORK)                                                             \
+      B(accept), B(inverse_area), B(specular), B(reached), ARGS_WORK)                                                          \
     X(direct_light, ON(LIGHTS), EACH, PER_BUNDLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle),          \
-      B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct), ARGS_WORK)                                              \
-    X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(emitters), B(hit_triangle),     \
-      B(position), B(normal), B(albedo), B(rays), B(gloss), B(direct), ARGS_WORK)                                              \
-    X(sky_light, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(skylight), ARGS_RAYS, ARGS_ROUND, B(emitters), B(hit_triangle),      \
-      B(position), B(normal), B(rays), B(gloss), B(skylight), ARGS_WORK)                                                       \
-    X(sky_filter, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(gloss),     \
+      B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
+    X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),  \
+      B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
+    X(sky_light, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(skylight), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),   \
+      B(position), B(normal), B(rays), B(specular), B(skylight), ARGS_WORK)                                                    \
+    X(sky_filter, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(specular),  \
       B(skylight), B(direct))                                                                                                  \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters), B(scene), V(round), B(masks), B(counters))  \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(lights), V(frame), B(sides),     \
@@ -75,10 +75,10 @@
     X(photon_dots, ON_DOTS, FIRST, PER_PHOTON, ONCE, W(dots), B(scene), B(cameras), V(frame), B(photons), B(hit_distance),     \
       B(dots))                                                                                                                 \
     X(expose, ON_FILM, EACH, PER_SAMPLE, ONCE, W(film) | W(shown), B(scene), ARGS_ROUND, B(albedo), B(direct), B(indirect),    \
-      B(gloss), B(rays), B(film), B(shown))                                                                                    \
+      B(specular), B(rays), B(film), B(shown))                                                                                 \
     X(resolve, ALWAYS, AT_END, PER_SAMPLE, ONCE, W(framebuffer), B(scene), B(cameras), V(frame), B(bvh), B(hit_triangle),      \
       B(hit_distance), B(normal), B(albedo), B(direct), V(max_nodes), B(indirect), B(keys), B(masks), B(prefix),               \
-      B(list_count), B(dots), B(photons), B(gloss), B(rays), B(film), B(edges), V(pitch), B(framebuffer))                      \
+      B(list_count), B(dots), B(photons), B(specular), B(rays), B(film), B(edges), V(pitch), B(framebuffer))                   \
     X(account, ON(PHOTONS), EACH, ONE_GROUP, ONCE, W(counters) | W(faults), B(counters), V(frame), V(round), B(faults))
 
 #endif

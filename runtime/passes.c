@@ -24,11 +24,11 @@ const vit_section vit_buffer_sections[B_COUNT] = {VIT_BUFFERS(X)};
 static const uint64_t buffer_when[B_COUNT] = {VIT_BUFFERS(X)};
 #undef X
 
-int vit_pass_called(uint32_t pass, const vit_limits *l) {
+int vit_pass_called(uint32_t pass, const vit_launch *l) {
     return (vit_passes[pass].when & ~l->effects) == 0;
 }
 
-int vit_buffer_called(uint32_t buffer, const vit_limits *l) {
+int vit_buffer_called(uint32_t buffer, const vit_launch *l) {
     return buffer_when[buffer] == ALWAYS || (buffer_when[buffer] & l->effects) != 0;
 }
 
@@ -50,11 +50,11 @@ uint32_t vit_format_word(vit_format format) {
     return bytes[format];
 }
 
-size_t vit_row_bytes(const vit_scene *s, const vit_limits *l) {
+size_t vit_row_bytes(const vit_scene *s, const vit_launch *l) {
     return (size_t)s->width * vit_format_bytes(l->format);
 }
 
-size_t vit_pitch_bytes(const vit_limits *l) {
+size_t vit_pitch_bytes(const vit_launch *l) {
     return (size_t)l->pitch * vit_format_bytes(l->format);
 }
 
@@ -67,7 +67,7 @@ int vit_view_light(vit_view view) {
     return shows[view];
 }
 
-uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits *l) {
+uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_launch *l) {
     if (!vit_buffer_called(buffer, l))
         return 0;
     switch (buffer) {
@@ -81,13 +81,13 @@ uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits 
     }
 }
 
-uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l) {
+uint32_t vit_buffer_word(uint32_t buffer, const vit_launch *l) {
     if (buffer == B_framebuffer)
         return vit_format_word(l->format);
     return buffer == B_position && (l->effects & ON(SMALL_SAMPLES)) ? 2 : 4;
 }
 
-const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
+const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l) {
     uint64_t by = buffer_when[buffer] & l->effects;
     if (buffer_when[buffer] == ALWAYS)
         return "always";
@@ -105,7 +105,7 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l) {
     return by & ON_DOTS ? "view photons" : by & ON_WORK ? "count_work" : "not called for";
 }
 
-int vit_pass_in_round(const vit_pass *p, const vit_limits *l, uint32_t round) {
+int vit_pass_in_round(const vit_pass *p, const vit_launch *l, uint32_t round) {
     switch (p->rounds) {
     case FIRST:
         return round == 0;
@@ -118,7 +118,7 @@ int vit_pass_in_round(const vit_pass *p, const vit_limits *l, uint32_t round) {
     }
 }
 
-uint32_t vit_pass_rounds(const vit_pass *p, const vit_limits *l) {
+uint32_t vit_pass_rounds(const vit_pass *p, const vit_launch *l) {
     return p->rounds == EACH ? l->rounds : p->rounds != SECOND_COPY || l->rounds > l->layers;
 }
 
@@ -130,7 +130,7 @@ static size_t round_up(size_t n, size_t to) {
     return (n + to - 1) / to * to;
 }
 
-void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level, size_t *local, size_t *global) {
+void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level, size_t *local, size_t *global) {
     size_t nodes = level_words(s, level) < l->max_nodes ? level_words(s, level) : l->max_nodes, n = 1;
     *local = l->group;
     switch (p->extent) {
@@ -180,11 +180,11 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, u
     *global = round_up(n, *local);
 }
 
-uint32_t vit_pass_chunks(const vit_pass *p, const vit_limits *l, uint32_t level) {
+uint32_t vit_pass_chunks(const vit_pass *p, const vit_launch *l, uint32_t level) {
     return level == 0 && p->repeat == LISTED ? l->chunks : 1;
 }
 
-int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level) {
+int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level) {
     int last = level + 1 == s->levels;
     switch (p->repeat) {
     case ONCE:

@@ -17,7 +17,7 @@
 #define ALWAYS ((uint64_t)0)
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
-typedef struct vit_limits {
+typedef struct vit_launch {
     uint64_t effects; /* the pack's, and ON_DOTS... */
     uint32_t rounds;  /* times that the passes of a frame's view samples run: copies * layers */
     uint32_t layers;  /* view samples of a ray: 2 where glass also mirrors, else 1 */
@@ -25,12 +25,12 @@ typedef struct vit_limits {
     vit_format format;
     vit_view view;
     uint32_t pitch;        /* of the framebuffer: pixels from one row to the next, at least the width */
-    uint32_t lanes, group; /* samples a work-item, work-items a work-group of flat passes */
+    uint32_t lanes, group; /* samples per work-item, work-items a work-group of flat passes */
     uint32_t scan_group;   /* work-items of single-group passes */
     uint32_t splat_group;  /* work-items a node in splat passes */
     uint32_t run;          /* samples in a row a work-item of cluster passes; a multiple of 16 */
     uint32_t chunks;       /* work-groups that share the root's list of photons */
-} vit_limits;
+} vit_launch;
 
 #define VIT_CHUNKS 64u /* chunks of the root's list, at most */
 #define VIT_BUCKETS_OF(l) ((l)->effects & ON(RAW_BUCKETS) ? 54u : 8u)
@@ -56,8 +56,8 @@ typedef struct vit_limits {
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \
     X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                           \
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                          \
-    X(emitters, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                         \
-      VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_emitter))                                       \
+    X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
+      VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
     X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \
     X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                    \
     X(hit_distance, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                    \
@@ -65,8 +65,8 @@ typedef struct vit_limits {
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
-    X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 8)                                                                        \
-    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(GLOSS) ? 24 : 12))                                 \
+    X(specular, ON(SPECULAR), NONE, (uint64_t)s->samples * 8)                                                                  \
+    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(SPECULAR) ? 24 : 12))                              \
     X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                        \
     X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                             \
     X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                              \
@@ -171,30 +171,30 @@ extern const char *const vit_buffer_names[B_COUNT];
 extern const vit_section vit_buffer_sections[B_COUNT];
 
 /* Does a pass run in this round? */
-int vit_pass_in_round(const vit_pass *p, const vit_limits *l, uint32_t round);
+int vit_pass_in_round(const vit_pass *p, const vit_launch *l, uint32_t round);
 /* Rounds that a pass runs in. */
-uint32_t vit_pass_rounds(const vit_pass *p, const vit_limits *l);
+uint32_t vit_pass_rounds(const vit_pass *p, const vit_launch *l);
 
 /* Does the frame need the pass, the buffer? */
-int vit_pass_called(uint32_t pass, const vit_limits *l);
-int vit_buffer_called(uint32_t buffer, const vit_limits *l);
-uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_limits *l);
+int vit_pass_called(uint32_t pass, const vit_launch *l);
+int vit_buffer_called(uint32_t buffer, const vit_launch *l);
+uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_launch *l);
 /* Bytes of the words that the buffer is made of: 4, or 2 where it holds half words. */
-uint32_t vit_buffer_word(uint32_t buffer, const vit_limits *l);
+uint32_t vit_buffer_word(uint32_t buffer, const vit_launch *l);
 /* Name of an effect that calls for the buffer: "always", or of the first. */
-const char *vit_buffer_effect(uint32_t buffer, const vit_limits *l);
+const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l);
 /* Bytes of a pixel, and of the words that it is made of. */
 uint32_t vit_format_bytes(vit_format format);
 uint32_t vit_format_word(vit_format format);
 /* Bytes of a row of pixels, and from one row of the framebuffer to the next. */
-size_t vit_row_bytes(const vit_scene *s, const vit_limits *l);
-size_t vit_pitch_bytes(const vit_limits *l);
+size_t vit_row_bytes(const vit_scene *s, const vit_launch *l);
+size_t vit_pitch_bytes(const vit_launch *l);
 /* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
 int vit_view_light(vit_view view);
 
 /* Work-items a work-group, and in all, of a pass at a level. */
-void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level, size_t *local, size_t *global);
-uint32_t vit_pass_chunks(const vit_pass *p, const vit_limits *l, uint32_t level);
-int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_limits *l, uint32_t level);
+void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level, size_t *local, size_t *global);
+uint32_t vit_pass_chunks(const vit_pass *p, const vit_launch *l, uint32_t level);
+int vit_pass_at_level(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level);
 
 #endif

@@ -13,7 +13,7 @@ typedef struct vit_host_fault {
 
 struct vit {
     vit_pack pack;
-    vit_limits limits;
+    vit_launch launch;
     const vit_device *device;
     void *state; /* the device's */
     int profile;

@@ -14,14 +14,14 @@
     X(activate, z->activate *(z->samples / 16))                                                                                \
     X(chains, (4 + 4 + 4 + 4 + 40) * z->samples + HITS)                                                                        \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->gloss) * z->samples +                                \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->specular) * z->samples +                             \
                    z->cell * w[VIT_WORK_surface_points] + HITS)                                                                \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
-    X(area_light, (LIT + sizeof(vit_emitter) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                             \
+    X(area_light, (LIT + sizeof(vit_light_sample) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                        \
     X(sky_light,                                                                                                               \
-      (4 + z->position + 4 + z->face + z->view + z->gloss / 2 + z->skylight + sizeof(vit_emitter) * z->sky_samples) *          \
+      (4 + z->position + 4 + z->face + z->view + z->specular / 2 + z->skylight + sizeof(vit_light_sample) * z->sky_samples) *  \
           z->samples)                                                                                                          \
-    X(sky_filter, (z->position + 4 + 4 + z->gloss / 2 + z->skylight + 12 + 12) * z->samples)                                   \
+    X(sky_filter, (z->position + 4 + 4 + z->specular / 2 + z->skylight + 12 + 12) * z->samples)                                \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                  \
     X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                 \
@@ -48,7 +48,7 @@
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
 #define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
 /* What passes of direct light read and write a sample. */
-#define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->face + z->view + z->gloss)
+#define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->face + z->view + z->specular)
 #define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
 #define BOX BOX_BYTES(z->zones)
 
@@ -64,17 +64,17 @@ typedef struct sizes {
     uint64_t shown, pixel;         /* bytes: that resolve reads a sample, writes a pixel (with dots, and reads) */
     uint64_t film;                 /* 1: a pixel has several samples */
     uint64_t activate;             /* bytes a block of samples: active, edges, split */
-    uint64_t face;                 /* bytes a sample: of its triangle, for the normal; 0 without smooth normals */
-    uint64_t end, view, gloss;     /* bytes a sample: of a chain's end, of its direction, of the lobe */
+    uint64_t face;                 /* bytes per sample: of its triangle, for the normal; 0 without smooth normals */
+    uint64_t end, view, specular;  /* bytes per sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
-    uint64_t lamps;    /* bytes a sample: whether it is a lamp */
-    uint64_t skylight; /* bytes a sample: of the sky's irradiance, and of what the lobe reflects of it */
+    uint64_t lamps;    /* bytes per sample: whether it is an area light */
+    uint64_t skylight; /* bytes per sample: of the sky's irradiance, and of what the lobe reflects of it */
     uint64_t zones, baked,
         cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
 
 /* What resolve reads a sample: the hit, and what the view shows. */
-static uint64_t shown_bytes(const vit_limits *l) {
+static uint64_t shown_bytes(const vit_launch *l) {
     const int light = vit_view_light(l->view), photons = (l->effects & ON(PHOTONS)) != 0;
     switch (l->view) {
     case VIT_VIEW_final:
@@ -100,7 +100,7 @@ static uint64_t least(uint64_t a, uint64_t b) {
     return a < b ? a : b;
 }
 
-static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c) {
+static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c) {
     sizes z = {.samples = s->samples,
                .pixels = (uint64_t)s->width * s->height,
                .masks = s->mask_words,
@@ -116,14 +116,14 @@ static sizes sizes_of(const vit_scene *s, const vit_limits *l, const uint32_t *c
     z.film = (l->effects & ON_FILM) != 0;
     z.activate = 4 + (l->effects & ON(ANTIALIAS) ? 4u : 0u) + (l->effects & ON(GLASS) ? 4u : 0u);
     z.end = l->effects & ON_CHAINS ? 28 : 0;
-    z.gloss = l->effects & ON(GLOSS) ? 8 : 0;
+    z.specular = l->effects & ON(SPECULAR) ? 8 : 0;
     z.face = l->effects & ON(SMOOTH) ? sizeof(vit_triangle) : 0;
-    z.view = z.gloss && z.end ? 12 : 0;
-    z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.gloss ? 4u : 0u);
+    z.view = z.specular && z.end ? 12 : 0;
+    z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.specular ? 4u : 0u);
     z.area_samples = s->area_samples;
     z.sky_samples = s->sky_samples;
     z.lamps = l->effects & ON(AREA_LIGHTS) ? 4 : 0;
-    z.skylight = z.gloss ? 24 : 12;
+    z.skylight = z.specular ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
@@ -157,7 +157,7 @@ static uint64_t pass_bytes(const char *name, const sizes *z, const uint64_t *w) 
     return 0;
 }
 
-void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_limits *l, const uint32_t *c, vit_statistics *out) {
+void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_launch *l, const uint32_t *c, vit_statistics *out) {
     static const char *const names[] = {
 #define X(name, same, what) #name,
         VIT_WORKS(X)

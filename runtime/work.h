@@ -8,6 +8,6 @@
 #define VIT_WORK_WORDS (VIT_MAX_PASSES * VIT_WORK_COUNT * 2)
 
 /* Fills in the work of `out`. words: the buffer `work`; c: the frame's VIT_COUNTERS; both as the device left them. */
-void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_limits *l, const uint32_t *c, vit_statistics *out);
+void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_launch *l, const uint32_t *c, vit_statistics *out);
 
 #endif

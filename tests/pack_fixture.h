@@ -33,7 +33,7 @@ typedef struct pack_fixture {
     vit_u32 texels[FIXTURE_TEXELS];
     vit_u32 sides[2 * FIXTURE_TRIANGLES]; /* 24 in use for the cube */
     vit_cell cells[FIXTURE_CELLS];
-    vit_emitter emitters[FIXTURE_POINTS];
+    vit_light_sample emitters[FIXTURE_POINTS];
     vit_sky_texel sky[(FIXTURE_SKY + 2) * (FIXTURE_SKY + 2)];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
@@ -107,7 +107,7 @@ static inline void fixture_scene(vit_scene *s) {
                      .tile = 16,
                      .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(PHOTONS) |
                                 VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) | VIT_BIT(AREA) | VIT_BIT(SEQUENCE) |
-                                VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) |
+                                VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) |
                                 VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) |
                                 VIT_BIT(ANTIALIAS),
                      .materials = 2,
@@ -193,11 +193,11 @@ static inline void fixture_surfaces(pack_fixture *f) {
 
 static inline void fixture_far_lights(pack_fixture *f) {
     for (int i = 0; i < FIXTURE_POINTS; i++)
-        f->emitters[i] = i < VIT_PATTERNS ? (vit_emitter){.position = {0.0625f * (float)i, 0.75f, 0},
-                                                          .radius2 = 0.0625f,
-                                                          .normal = {0, -1, 0},
-                                                          .power = {1, 2, 3}}
-                                          : (vit_emitter){.position = {0, 1, 0}, .power = {0.5f, 0.5f, 1}};
+        f->emitters[i] = i < VIT_PATTERNS ? (vit_light_sample){.position = {0.0625f * (float)i, 0.75f, 0},
+                                                               .radius2 = 0.0625f,
+                                                               .normal = {0, -1, 0},
+                                                               .power = {1, 2, 3}}
+                                          : (vit_light_sample){.position = {0, 1, 0}, .power = {0.5f, 0.5f, 1}};
     for (int i = 0; i < (FIXTURE_SKY + 2) * (FIXTURE_SKY + 2); i++)
         f->sky[i] = (vit_sky_texel){.radiance = {0.25f, 0.5f, (float)i}};
 }

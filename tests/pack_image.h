@@ -31,7 +31,7 @@ typedef struct image {
     vit_mip *mips;
     vit_u32 *sides;
     vit_cell *cells;
-    vit_emitter *emitters;
+    vit_light_sample *emitters;
     vit_sky_texel *sky;
     vit_photon *photons;
     vit_gold *golds;

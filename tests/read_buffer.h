@@ -7,7 +7,7 @@
 
 /* A copy of a device buffer; free() it. */
 static inline void *read_buffer(const open_pack *p, vit_buffer b) {
-    const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->limits);
+    const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->launch);
     void *out = malloc(bytes + 1);
     assert_non_null(out);
     vit_text why = {""};

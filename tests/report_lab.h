@@ -77,13 +77,13 @@ static inline void lab_fronts(cost_results *r) {
     for (uint32_t i = 0; i < r->count; i++) {
         cost_setting *s = &r->settings[i];
         s->elsewhere = strcmp(s->knob, "lanes") == 0;
-        s->front = s->front_relmse = !s->elsewhere;
+        s->pareto = s->pareto_relmse = !s->elsewhere;
         for (uint32_t k = 0; k < r->count; k++) {
             const cost_setting *o = &r->settings[k];
             if (o->ms < s->ms && o->total.nmse < s->total.nmse)
-                s->front = false;
+                s->pareto = false;
             if (o->ms < s->ms && o->total.relmse < s->total.relmse)
-                s->front_relmse = false;
+                s->pareto_relmse = false;
         }
     }
 }

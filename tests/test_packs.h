@@ -42,7 +42,7 @@ static const char test_packs_bodies[] =
 static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\nnewmtl chrome\nKd 0.5 0.5 0.5\n";
 
 /* All that a scene can call for. */
-#define SHINE_SCENE                                                                                                            \
+#define SPECULAR_SCENE                                                                                                         \
     "meshes = ( { file = \"room.obj\"; }, { file = \"bodies.obj\"; } );\nambient = [0.02, 0.03, 0.04];\n"                      \
     "background = [0.2, 0.3, 0.4];\nsky: { light = true; };\n"                                                                 \
     "materials = ( { name = \"lamp\"; area_light = true; },"                                                                   \
@@ -88,7 +88,7 @@ static const struct {
     {"still.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW(ROOM_STILL)},
     {"bodies.obj", test_packs_bodies},
     {"bodies.mtl", test_packs_bodies_materials},
-    {"shine.cfg", SHINE_SCENE},
+    {"shine.cfg", SPECULAR_SCENE},
     {"lamp.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW("")},
 };
 

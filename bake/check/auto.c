@@ -86,7 +86,7 @@ static vit_status choose_bounces(search *s, const pipeline_packed *packed, vit_t
     return VIT_OK;
 }
 
-/* More points on lamps, more directions to the sky, as long as direct light is off and that helps. */
+/* More points on area lights, more directions to the sky, as long as direct light is off and that helps. */
 static vit_status choose_samples(search *s, const pipeline_packed *packed, double direct, vit_text *why) {
     const uint64_t e = packed->plan.scene.effects;
     const bool points = (e & VIT_BIT(AREA_LIGHTS)) && !kept(s, SETTING_BIT(light_samples)),

@@ -136,7 +136,7 @@ static int in_order(const void *a, const void *b) {
     return x->by < y->by ? -1 : x->by > y->by ? 1 : x->spot < y->spot ? -1 : 1;
 }
 
-/* Pixels that any light but their own could change: not the background, nor lamps alone. */
+/* Pixels that any light but their own could change: not the background, nor area lights alone. */
 static bool counts(const spot *s, const float *picture, uint32_t i) {
     const double right = spot_brightness(s);
     return sum3(s->variance) > 0 || right > sum3(s->direct) || fabs(shown(picture, i) - right) > SAME * right;

@@ -15,7 +15,7 @@
 typedef struct check {
     uint32_t frames[CHECK_FRAMES], frame_count; /* of the scene's path, ascending */
     spot spots[CHECK_PIXELS];                   /* spot.frame: place in `frames` until check_trace() has another pack */
-    uint32_t count, paths;                      /* paths a pixel that were traced */
+    uint32_t count, paths;                      /* paths per pixel that were traced */
     uint32_t bounces;                           /* of the limited reference */
 } check;
 

@@ -15,5 +15,5 @@ uint64_t effects_named(const char *name) {
     for (int i = 0; i < 64; i++)
         if (names[i] && strcmp(names[i], name) == 0)
             return (uint64_t)1 << i;
-    return 0;
+    return strcmp(name, "gloss") == 0 ? VIT_BIT(SPECULAR) : 0; /* its former name */
 }

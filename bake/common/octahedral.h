@@ -3,7 +3,7 @@
 #ifndef VIT_BAKE_OCTAHEDRAL_H
 #define VIT_BAKE_OCTAHEDRAL_H
 
-/* sx, sy in -most..most: 32767 for 16 bits a component, 127 for 8. In float and in this order:
+/* sx, sy in -most..most: 32767 for 16 bits per component, 127 for 8. In float and in this order:
  *     x = sx / most;  y = sy / most;  z = (1 - |x|) - |y|
  *     if z < 0:  x, y = (1 - |y|) * sign(x), (1 - |x|) * sign(y)        (with the old x and y; the sign of 0 is +)
  *     l = sqrt((x * x + y * y) + z * z);  n = (x / l, y / l, z / l) */

@@ -21,7 +21,7 @@ static vit_light *lights_with_paths(const pack_sections *whole, const vit_scene 
     return lights;
 }
 
-vit_status adds_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why) {
+vit_status effect_cost_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why) {
     pack_sections sections = *whole;
     const vit_scene *all = whole->data[VIT_SECTION_META];
     vit_scene s = *all;
@@ -38,7 +38,7 @@ vit_status adds_without(const pack_sections *whole, uint64_t effects, void **byt
         s.cells = 0;
     if (s.area_samples == 0 && all->area_samples > 0) /* the sky's come after them */
         sections.data[VIT_SECTION_EMIT] =
-            (const vit_emitter *)whole->data[VIT_SECTION_EMIT] + (size_t)VIT_PATTERNS * all->area_samples;
+            (const vit_light_sample *)whole->data[VIT_SECTION_EMIT] + (size_t)VIT_PATTERNS * all->area_samples;
     if (!(s.effects & VIT_BIT(SKY_IMAGE)))
         s.sky_size = 0;
     sections.data[VIT_SECTION_META] = &s;
@@ -69,36 +69,36 @@ static vit_status measure(const void *pack, size_t size, unsigned threads, uint6
     *bytes = 0;
     for (uint32_t i = 0; i < o.need.buffer_count; i++)
         *bytes += strcmp(o.need.buffers[i].name, "work") == 0 ? 0 : o.need.buffers[i].bytes;
-    for (uint32_t i = 0; i < ADDS_FRAMES && status == VIT_OK; i++) {
-        status = opened_frame(&o, last * i / (ADDS_FRAMES - 1), why);
+    for (uint32_t i = 0; i < EFFECT_COST_FRAMES && status == VIT_OK; i++) {
+        status = opened_frame(&o, last * i / (EFFECT_COST_FRAMES - 1), why);
         if (status == VIT_OK)
             status = vit_stats(o.v, &counted, why);
         if (status == VIT_OK)
             sum += fit_work_units(c->pass_work, c->pass_count, c->work_names, c->work_count);
     }
     opened_end(&o);
-    *work = sum / ADDS_FRAMES;
+    *work = sum / EFFECT_COST_FRAMES;
     return status;
 }
 
-static vit_status measure_without(const pipeline_packed *p, uint64_t effect, unsigned threads, const adds *whole, adds_of *out,
-                                  vit_text *why) {
+static vit_status measure_without(const pipeline_packed *p, uint64_t effect, unsigned threads, const effect_costs *whole,
+                                  effect_cost *out, vit_text *why) {
     void *pack = NULL;
     size_t size;
     uint64_t bytes, work;
-    vit_status status = adds_without(&p->sections, effect, &pack, &size, why);
+    vit_status status = effect_cost_without(&p->sections, effect, &pack, &size, why);
     if (status == VIT_OK)
         status = measure(pack, size, threads, &bytes, &work, why);
     free(pack);
     if (status == VIT_OK)
-        *out = (adds_of){true, (int64_t)(whole->device_bytes - bytes), (int64_t)(whole->work - work)};
+        *out = (effect_cost){true, (int64_t)(whole->device_bytes - bytes), (int64_t)(whole->work - work)};
     return status == VIT_BAD_INPUT ? VIT_OK : status; /* the loader does not take it: records call for the effect */
 }
 
-vit_status adds_measure(const pipeline_packed *p, unsigned threads, progress *shown, adds *out, vit_text *why) {
+vit_status effect_cost_measure(const pipeline_packed *p, unsigned threads, progress *shown, effect_costs *out, vit_text *why) {
     memset(out, 0, sizeof *out);
     progress_stage(shown, "what each effect adds");
-    const uint64_t called = p->plan.scene.effects & ADDS_MEASURED;
+    const uint64_t called = p->plan.scene.effects & EFFECT_COST_MEASURED;
     vit_status status = measure(p->bytes, p->size, threads, &out->device_bytes, &out->work, why);
     for (int bit = 0; bit < 64 && status == VIT_OK; bit++) {
         progress_step(shown, bit / 64.0);

@@ -92,7 +92,7 @@ vit_status fit_choose(const cost_results *r, const fit_budget *b, uint32_t *chos
 }
 
 /* No other setting costs at most as much, in what the budget counts, and is at most as wrong. */
-static bool on_front(const cost_results *r, const fit_budget *b, uint32_t i) {
+static bool on_pareto_front(const cost_results *r, const fit_budget *b, uint32_t i) {
     const cost_setting *s = &r->settings[i];
     for (uint32_t k = 0; k < r->count; k++) {
         const cost_setting *o = &r->settings[k];
@@ -108,7 +108,7 @@ static bool on_front(const cost_results *r, const fit_budget *b, uint32_t i) {
 static uint32_t front_order(const cost_results *r, const fit_budget *b, uint32_t chosen, uint32_t *order) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {
-        if ((i != chosen && !on_front(r, b, i)) || isinf(price(&r->settings[i], b))) /* not timed */
+        if ((i != chosen && !on_pareto_front(r, b, i)) || isinf(price(&r->settings[i], b))) /* not timed */
             continue;
         uint32_t at = count++;
         for (; at > 0 && price(&r->settings[order[at - 1]], b) > price(&r->settings[i], b); at--)

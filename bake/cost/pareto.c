@@ -14,9 +14,9 @@ static bool beaten(const cost_results *r, uint32_t i, bool relmse) {
     return false;
 }
 
-void front_mark(cost_results *r) {
+void pareto_mark(cost_results *r) {
     for (uint32_t i = 0; i < r->count; i++) {
-        r->settings[i].front = !r->settings[i].elsewhere && !beaten(r, i, false);
-        r->settings[i].front_relmse = !r->settings[i].elsewhere && !beaten(r, i, true);
+        r->settings[i].pareto = !r->settings[i].elsewhere && !beaten(r, i, false);
+        r->settings[i].pareto_relmse = !r->settings[i].elsewhere && !beaten(r, i, true);
     }
 }

@@ -4,8 +4,8 @@
 
 #include "report/results.h"
 
-/* Sets front and front_relmse: a setting is on the Pareto front if no other one takes at most as long with at most its error,
+/* Sets front and pareto_relmse: a setting is on the Pareto front if no other one takes at most as long with at most its error,
  * and is better in one of the two. Of equal ones the first is on it. Settings that are `elsewhere` do not take part. */
-void front_mark(cost_results *r);
+void pareto_mark(cost_results *r);
 
 #endif

@@ -212,7 +212,7 @@ static vit_status run(sweep *s, vit_text *why) {
     else if (s->in->repeats > 0)
         status = sweep_times(s, why);
     if (status == VIT_OK)
-        front_mark(s->out);
+        pareto_mark(s->out);
     return status;
 }
 

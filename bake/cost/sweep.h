@@ -7,7 +7,7 @@
 #include <signal.h>
 
 #define SWEEP_FRAMES 7    /* frames of the path that are played, evenly spread, the compared one among them */
-#define SWEEP_SETTINGS 96 /* what the tools take if nothing is said: settings, frames timed, paths a pixel */
+#define SWEEP_SETTINGS 96 /* what the tools take if nothing is said: settings, frames timed, paths per pixel */
 #define SWEEP_REPEATS 14
 #define SWEEP_SAMPLES 4096
 #define SWEEP_LEAST_REPEATS 7
@@ -29,7 +29,7 @@ typedef struct sweep_input {
     uint32_t repeats;       /* frames timed a setting, >= SWEEP_LEAST_REPEATS; 0: times are not measured */
     double reference_error; /* NMSE that the reference's standard error must fall below; 0: a tenth of the smallest error found;
                                a quarter to choose by NMSE */
-    uint32_t max_samples;   /* of the reference, paths a pixel */
+    uint32_t max_samples;   /* of the reference, paths per pixel */
     const char *cache;      /* reference_input.cache */
     uint32_t frames;        /* of the path that are played, 1 .. SWEEP_FRAMES; 0: SWEEP_FRAMES */
     sweep_list_fn *list;    /* makes the settings; NULL: from the knobs, and by searching */

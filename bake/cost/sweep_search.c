@@ -21,7 +21,7 @@ static vit_status take_over(sweep *s, vit_text *why) {
     return status == VIT_OK ? sweep_errors(s, why) : status;
 }
 
-static bool on_front(const cost_results *r, uint32_t i) {
+static bool on_pareto_front(const cost_results *r, uint32_t i) {
     const cost_setting *s = &r->settings[i];
     for (uint32_t k = 0; k < r->count; k++) {
         const cost_setting *o = &r->settings[k];
@@ -40,7 +40,7 @@ static vit_status add_round(sweep *s, vit_text *why) {
     for (uint32_t step = 0; more && status == VIT_OK; step++) {
         more = false;
         for (uint32_t i = 0; i < s->out->count && s->knobs.count < upto && status == VIT_OK; i++)
-            if (on_front(s->out, i))
+            if (on_pareto_front(s->out, i))
                 more |= knobs_beside(&s->knobs, i, step, &status, why);
     }
     return status;

@@ -16,8 +16,8 @@
 #define DOUBT 2.0f      /* standard errors away at most */
 
 typedef struct asking {
-    const reach_search *s;
-    reach_patch patch;
+    const dark_sides_search *s;
+    dark_sides_patch patch;
     bool light[PATCH_SIDES];                         /* a group, by its least side: some ray found light */
     bool lit[PATCH_SIDES], open[PATCH_SIDES];        /* open: not known, and rays are left */
     bool alone[PATCH_SIDES];                         /* too large to share */
@@ -47,7 +47,7 @@ static void found_lit(asking *a, uint16_t side) {
 
 /* Adds what a ray found. */
 static void add_light(asking *a, uint16_t side, uint32_t found) {
-    const float gives = found < a->s->sides ? REACH_ALBEDO * a->s->irradiance[found] : 0.0f;
+    const float gives = found < a->s->sides ? DARK_SIDES_ALBEDO * a->s->irradiance[found] : 0.0f;
     if (!(gives > 0.0f))
         return;
     a->light[a->patch.group[side]] = true;
@@ -71,7 +71,7 @@ static void judge(asking *a, uint16_t side, uint32_t rays) {
 
 /* Asks so many more, or until it is decided; more than most_rays() where it is in doubt. */
 static void ask(asking *a, uint16_t side, uint32_t lights, uint32_t rays) {
-    const reach_search *s = a->s;
+    const dark_sides_search *s = a->s;
     const uint32_t whole = 2 * a->patch.first + side, all_lights = most_lights(a, side), first = gathered(a, side);
     const ray_side from = side_of(s->g, whole);
     for (; a->open[side] && lights > 0 && a->lights[side] < all_lights; lights--, a->shot++)
@@ -79,7 +79,7 @@ static void ask(asking *a, uint16_t side, uint32_t lights, uint32_t rays) {
             found_lit(a, side);
     for (; a->open[side] && rays > 0; rays--, a->shot++) {
         float distance;
-        add_light(a, side, reach_look(s, whole, &from, first + a->rays[side]++, &distance));
+        add_light(a, side, dark_sides_look(s, whole, &from, first + a->rays[side]++, &distance));
         judge(a, side, first + a->rays[side]);
     }
 }
@@ -108,7 +108,7 @@ static void ask_group(asking *a, uint16_t group) {
 }
 
 /* What is known. A side that any light shines on is lit, however weakly; the threshold is for reflected light alone. */
-static void take_known(asking *a, reach_search *s, uint32_t patch) {
+static void take_known(asking *a, dark_sides_search *s, uint32_t patch) {
     const uint32_t first = patch * PATCH_TRIANGLES, left = s->m->triangles - first;
     a->s = s;
     patch_link(s->g, first, left < PATCH_TRIANGLES ? left : PATCH_TRIANGLES, &a->patch);
@@ -118,8 +118,8 @@ static void take_known(asking *a, reach_search *s, uint32_t patch) {
             continue; /* neither lit nor dark */
         const uint16_t side = (uint16_t)i;
         a->open[i] = true;
-        a->alone[i] = LARGE * reach_part(s, whole) > 1.0;
-        a->larger[i] = (float)fmax(1.0, LARGER * reach_part(s, whole));
+        a->alone[i] = LARGE * dark_sides_part(s, whole) > 1.0;
+        a->larger[i] = (float)fmax(1.0, LARGER * dark_sides_part(s, whole));
         if (s->direct[whole] > 0.0f)
             found_lit(a, side);
         else {
@@ -132,8 +132,8 @@ static void take_known(asking *a, reach_search *s, uint32_t patch) {
 
 /* By the mean of the group, not by its own irradiance: to shoot more rays only where the first ones had no luck, and keep the
  * others' luck, would make dim places too bright. */
-void reach_find_faint(void *search, uint32_t patch) {
-    reach_search *s = search;
+void dark_sides_find_faint(void *search, uint32_t patch) {
+    dark_sides_search *s = search;
     asking a = {0};
     float sum[PATCH_SIDES] = {0.0f};
     uint32_t count[PATCH_SIDES] = {0};
@@ -146,12 +146,12 @@ void reach_find_faint(void *search, uint32_t patch) {
     for (uint32_t i = 0; i < 2 * a.patch.count; i++) {
         const uint32_t whole = 2 * a.patch.first + i, group = a.patch.group[i];
         s->faint[whole] = side_material(s->m, s->g, whole)->kind == VIT_MATTE && a.light[group] && !(s->direct[whole] > 0.0f) &&
-                          sum[group] < REACH_FAINT * s->threshold * (float)count[group];
+                          sum[group] < DARK_SIDES_FAINT * s->threshold * (float)count[group];
     }
 }
 
-void reach_ask_patch(void *search, uint32_t patch) {
-    reach_search *s = search;
+void dark_sides_ask_patch(void *search, uint32_t patch) {
+    dark_sides_search *s = search;
     asking a = {0};
     take_known(&a, s, patch);
     const uint32_t sides = 2 * a.patch.count;

@@ -24,7 +24,7 @@
 
 #define LEAST_LIGHT_RAYS (1u << 18) /* of step 1: two a side between these */
 #define MOST_LIGHT_RAYS (1u << 20)
-#define LEAST_GATHERED 4u /* rays a side in step 2, between these and so that they are GATHERED in all */
+#define LEAST_GATHERED 4u /* rays per side in step 2, between these and so that they are GATHERED in all */
 #define MOST_GATHERED 16u
 #define GATHERED (1u << 20)
 #define LOOKED 16u                  /* and so many more by faint ones in step 4 */
@@ -36,7 +36,7 @@
 
 /* Step 1: a ray of one light, from its place in one frame. */
 static void shoot_from_light(void *user, uint32_t ray) {
-    reach_search *s = user;
+    dark_sides_search *s = user;
     vec origin, direction;
     if (!lights_leave(s, ray, &origin, &direction))
         return;
@@ -48,11 +48,11 @@ static void shoot_from_light(void *user, uint32_t ray) {
     atomic_fetch_add_explicit(&s->shot, 1, memory_order_relaxed);
 }
 
-double reach_part(const reach_search *s, uint32_t side) {
+double dark_sides_part(const dark_sides_search *s, uint32_t side) {
     return (double)s->area[side / 2] / (2.0 * s->whole);
 }
 
-uint32_t reach_look(const reach_search *s, uint32_t side, const ray_side *from, uint32_t i, float *distance) {
+uint32_t dark_sides_look(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i, float *distance) {
     const vec origin = side_point(from, side_sequence(from, i, 0), side_sequence(from, i, 1));
     const vec direction = cosine_direction(from->normal, side_sequence(from, i, 2), side_sequence(from, i, 3));
     *distance = INFINITY;
@@ -60,13 +60,13 @@ uint32_t reach_look(const reach_search *s, uint32_t side, const ray_side *from, 
 }
 
 /* The rays of a side from `from` on. */
-static void gather_from(reach_search *s, uint32_t side, uint32_t from) {
+static void gather_from(dark_sides_search *s, uint32_t side, uint32_t from) {
     const ray_side face = side_of(s->g, side);
     const uint32_t first = s->found_first[side], count = s->found_first[side + 1] - first;
     float sum = 0.0f;
     for (uint32_t i = from; i < count; i++) {
         float distance;
-        const uint32_t found = reach_look(s, side, &face, i, &distance);
+        const uint32_t found = dark_sides_look(s, side, &face, i, &distance);
         s->found[first + i] = found;
         sum += found != RAY_NOTHING ? distance : 0.0f;
     }
@@ -76,7 +76,7 @@ static void gather_from(reach_search *s, uint32_t side, uint32_t from) {
 
 /* Step 2. */
 static void gather(void *user, uint32_t side) {
-    reach_search *s = user;
+    dark_sides_search *s = user;
     gather_from(s, side, 0);
     const double flux = (double)atomic_load_explicit(s->flux + side, memory_order_relaxed) / FLUX_ONE;
     s->direct[side] = (float)(flux / (double)s->area[side / 2]);
@@ -85,25 +85,25 @@ static void gather(void *user, uint32_t side) {
 
 /* Step 3. */
 static void reflect_once(void *user, uint32_t side) {
-    reach_search *s = user;
+    dark_sides_search *s = user;
     const uint32_t *found = s->found + s->found_first[side], count = s->found_first[side + 1] - s->found_first[side];
     float sum = 0.0f;
     for (uint32_t i = 0; i < count; i++)
         sum += found[i] < s->sides ? s->irradiance[found[i]] : 0.0f;
-    s->next_irradiance[side] = s->direct[side] + REACH_ALBEDO / (float)count * sum;
+    s->next_irradiance[side] = s->direct[side] + DARK_SIDES_ALBEDO / (float)count * sum;
     if (sum > 0.0f && !(s->irradiance[side] > 0.0f))
         atomic_fetch_add_explicit(&s->newly_reached, 1, memory_order_relaxed);
 }
 
 /* Of all sides, in the unit of power. */
-static double all_flux(const reach_search *s) {
+static double all_flux(const dark_sides_search *s) {
     double flux = 0.0;
     for (uint32_t side = 0; side < s->sides; side++)
         flux += (double)s->area[side / 2] * (double)s->irradiance[side];
     return flux;
 }
 
-static void solve(reach_search *s, unsigned threads) {
+static void solve(dark_sides_search *s, unsigned threads) {
     double flux = all_flux(s);
     for (int i = 0, still = 0; i < ITERATIONS && still < STILL; i++) {
         atomic_store(&s->newly_reached, 0);
@@ -118,13 +118,13 @@ static void solve(reach_search *s, unsigned threads) {
 }
 
 /* Mirrors and glass hand light on, and are neither lit nor dark. */
-static bool is_matt(const reach_search *s, uint32_t side) {
+static bool is_matt(const dark_sides_search *s, uint32_t side) {
     return side_material(s->m, s->g, side)->kind == VIT_MATTE;
 }
 
 /* Mean length of the ways between sides, m, each with the light that goes it; light that leaves the scene goes none. 0: all
  * does. */
-static double mean_free_path(const reach_search *s) {
+static double mean_free_path(const dark_sides_search *s) {
     double sum = 0.0, light = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {
         if (!is_matt(s, side))
@@ -141,25 +141,25 @@ static double mean_free_path(const reach_search *s) {
 }
 
 /* Irradiance below which a side is dark; 0: none is. */
-static float threshold_of(const reach_search *s) {
+static float threshold_of(const dark_sides_search *s) {
     double mean = 0.0, area = 0.0;
     for (uint32_t side = 0; side < s->sides; side++) {
         const double a = is_matt(s, side) ? (double)s->area[side / 2] : 0.0;
         mean += a * (double)s->irradiance[side];
         area += a;
     }
-    return area > 0.0 ? (float)((double)REACH_THRESHOLD * mean / area) : 0.0f;
+    return area > 0.0 ? (float)((double)DARK_SIDES_THRESHOLD * mean / area) : 0.0f;
 }
 
 /* Step 4. */
 static void gather_faint(void *user, uint32_t side) {
-    reach_search *s = user;
+    dark_sides_search *s = user;
     if (s->faint[side])
         gather_from(s, side, s->found_first[side + 1] - s->found_first[side] - LOOKED);
 }
 
 /* Makes room for LOOKED rays more of each faint side. False: out of memory. */
-static bool make_room(reach_search *s) {
+static bool make_room(dark_sides_search *s) {
     uint32_t more = 0;
     for (uint32_t side = 0; side < s->sides; side++)
         more += s->faint[side] ? LOOKED : 0;
@@ -177,13 +177,13 @@ static bool make_room(reach_search *s) {
     return true;
 }
 
-static uint32_t patches(const reach_search *s) {
+static uint32_t patches(const dark_sides_search *s) {
     return (s->m->triangles + PATCH_TRIANGLES - 1) / PATCH_TRIANGLES;
 }
 
 /* False: out of memory. */
-static bool look_closer(reach_search *s, unsigned threads) {
-    parallel_for(threads, patches(s), reach_find_faint, s);
+static bool look_closer(dark_sides_search *s, unsigned threads) {
+    parallel_for(threads, patches(s), dark_sides_find_faint, s);
     if (!make_room(s))
         return false;
     parallel_for(threads, s->sides, gather_faint, s);
@@ -193,7 +193,7 @@ static bool look_closer(reach_search *s, unsigned threads) {
 }
 
 /* False: out of memory. */
-static bool run_steps(reach_search *s, unsigned threads, reach_progress_fn *progress, void *user) {
+static bool run_steps(dark_sides_search *s, unsigned threads, dark_sides_progress_fn *progress, void *user) {
     parallel_for(threads, s->light_rays, shoot_from_light, s);
     if (progress)
         progress(user, 0.1);
@@ -209,14 +209,14 @@ static bool run_steps(reach_search *s, unsigned threads, reach_progress_fn *prog
             return false;
         if (progress)
             progress(user, 0.6);
-        parallel_for(threads, patches(s), reach_ask_patch, s);
+        parallel_for(threads, patches(s), dark_sides_ask_patch, s);
     }
     if (progress)
         progress(user, 1.0);
     return true;
 }
 
-static void flag_dark_sides(const reach_search *s, reach *out) {
+static void flag_dark_sides(const dark_sides_search *s, dark_sides *out) {
     out->rays = atomic_load(&s->shot);
     for (uint32_t side = 0; side < s->sides; side++) {
         const double area = (double)s->area[side / 2];
@@ -242,18 +242,18 @@ static uint32_t between(uint32_t least, uint64_t x, uint32_t most) {
 }
 
 /* How many rays each side shoots in step 2. False: out of memory. */
-static bool share_rays(reach_search *s) {
+static bool share_rays(dark_sides_search *s) {
     s->found_first = malloc(((size_t)s->sides + 1) * sizeof *s->found_first);
     if (!s->found_first)
         return false;
     s->found_first[0] = 0;
     for (uint32_t side = 0; side < s->sides; side++)
-        s->found_first[side + 1] = s->found_first[side] + s->gathered + (uint32_t)(reach_part(s, side) * GATHERED_BY_AREA);
+        s->found_first[side + 1] = s->found_first[side] + s->gathered + (uint32_t)(dark_sides_part(s, side) * GATHERED_BY_AREA);
     s->found = malloc((size_t)s->found_first[s->sides] * sizeof *s->found);
     return s->found != NULL;
 }
 
-static bool allocate(reach_search *s) {
+static bool allocate(dark_sides_search *s) {
     s->flux = calloc(s->sides, sizeof *s->flux);
     s->direct = malloc(s->sides * sizeof *s->direct);
     s->irradiance = malloc(s->sides * sizeof *s->irradiance);
@@ -264,7 +264,7 @@ static bool allocate(reach_search *s) {
     return share_rays(s) && s->flux && s->direct && s->irradiance && s->next_irradiance && s->path && s->lit && s->faint;
 }
 
-static void release(reach_search *s) {
+static void release(dark_sides_search *s) {
     ray_scene_close(&s->rays);
     lights_close(&s->lights);
     free(s->area);
@@ -280,7 +280,7 @@ static void release(reach_search *s) {
 }
 
 /* Areas and lights. False: out of memory. */
-static bool prepare(reach_search *s, const tracks *t, uint32_t frames, bool sky) {
+static bool prepare(dark_sides_search *s, const tracks *t, uint32_t frames, bool sky) {
     s->area = malloc(s->m->triangles * sizeof *s->area);
     for (uint32_t i = 0; s->area && i < s->m->triangles; i++) {
         s->area[i] = (float)triangle_area(s->g->triangles + i);
@@ -289,16 +289,16 @@ static bool prepare(reach_search *s, const tracks *t, uint32_t frames, bool sky)
     return s->area && lights_open(s, t, frames, sky);
 }
 
-vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
-                            reach_progress_fn *progress, void *user, reach *out, vit_text *why) {
+vit_status dark_sides_find(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
+                           dark_sides_progress_fn *progress, void *user, dark_sides *out, vit_text *why) {
     const double start = seconds();
-    *out = (reach){0};
-    reach_search s = {.g = g, .m = m, .sides = 2 * m->triangles};
+    *out = (dark_sides){0};
+    dark_sides_search s = {.g = g, .m = m, .sides = 2 * m->triangles};
     s.light_rays = between(LEAST_LIGHT_RAYS, 2 * (uint64_t)s.sides, MOST_LIGHT_RAYS);
     s.gathered = between(LEAST_GATHERED, GATHERED / s.sides, MOST_GATHERED);
     const bool fine = prepare(&s, t, frames, sky_light);
     vit_status status = VIT_OK;
-    if (fine && !lights_shine(&s.lights)) {
+    if (fine && !lights_emit(&s.lights)) {
         release(&s);
         return VIT_OK;
     }

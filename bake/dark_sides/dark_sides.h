@@ -6,28 +6,28 @@
 #include "geometry/bvh.h"
 #include "motion/tracks.h"
 
-/* A side is dark if its irradiance, averaged over the path, with surfaces that reflect REACH_ALBEDO, stays below
- * REACH_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
+/* A side is dark if its irradiance, averaged over the path, with surfaces that reflect DARK_SIDES_ALBEDO, stays below
+ * DARK_SIDES_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
  * everywhere. */
-#define REACH_ALBEDO 0.8f
-#define REACH_THRESHOLD 1e-4f
+#define DARK_SIDES_ALBEDO 0.8f
+#define DARK_SIDES_THRESHOLD 1e-4f
 
-typedef struct reach {
+typedef struct dark_sides {
     double area;                  /* m2, both sides of all triangles but those of mirrors and glass */
     double dark_front, dark_back; /* m2 of sides flagged dark */
     double free_path;             /* metres light goes from side to side, on average; 0: it finds none */
     uint32_t dark_sides;
     uint64_t rays;
     double seconds;
-} reach;
+} dark_sides;
 
-/* `done` runs from 0 to 1. Called by the thread that called reach_dark_sides(). */
-typedef void reach_progress_fn(void *user, double done);
+/* `done` runs from 0 to 1. Called by the thread that called dark_sides_find(). */
+typedef void dark_sides_progress_fn(void *user, double done);
 
 /* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames, the model's
  * area lights and, if `sky_light`, light from all round. Without any light or matt surface nothing is flagged. The result does
  * not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory, or Embree fails. */
-vit_status reach_dark_sides(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
-                            reach_progress_fn *progress, void *user, reach *out, vit_text *why);
+vit_status dark_sides_find(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
+                           dark_sides_progress_fn *progress, void *user, dark_sides *out, vit_text *why);
 
 #endif

@@ -57,12 +57,12 @@ static uint16_t root_of(uint16_t group[PATCH_SIDES], uint16_t side) {
     return side;
 }
 
-static void link(reach_patch *p, uint16_t a, uint16_t b) {
+static void link(dark_sides_patch *p, uint16_t a, uint16_t b) {
     const uint16_t x = root_of(p->group, a), y = root_of(p->group, b);
     p->group[x > y ? x : y] = x > y ? y : x;
 }
 
-void patch_link(const geometry *g, uint32_t first, uint32_t count, reach_patch *out) {
+void patch_link(const geometry *g, uint32_t first, uint32_t count, dark_sides_patch *out) {
     const float *corners[SLOTS] = {NULL};
     uint16_t numbers[SLOTS], corner_count = 0;
     edge edges[SLOTS];

@@ -41,73 +41,73 @@ static vec disc_point(vec center, vec n, float radius, float u, float v) {
     return plus(center, 1.0f, about(n, r * cosine, r * sine, 0.0f));
 }
 
-static const vit_light *light_of(const reach_lights *l, uint32_t source, uint32_t frame) {
+static const vit_light *light_of(const dark_sides_lights *l, uint32_t source, uint32_t frame) {
     return l->t->lights + (size_t)frame * l->t->light_count + source;
 }
 
-static bool is_sky(const reach_lights *l, uint32_t source) {
+static bool is_sky(const dark_sides_lights *l, uint32_t source) {
     return l->sky && source + 1 == l->sources;
 }
 
 /* False: out of memory. */
-static bool find_lamps(reach_search *s) {
-    reach_lights *l = &s->lights;
+static bool find_area_lights(dark_sides_search *s) {
+    dark_sides_lights *l = &s->lights;
     double area = 0.0, sum = 0.0;
     for (uint32_t i = 0; i < s->m->triangles; i++)
         if (material_lights(side_material(s->m, s->g, 2 * i))) {
             area += (double)s->area[i];
-            l->lamp_count++;
+            l->area_light_count++;
         }
-    l->lamps = malloc((l->lamp_count + 1u) * sizeof *l->lamps);
-    l->lamp_sum = malloc((l->lamp_count + 1u) * sizeof *l->lamp_sum);
-    if (!l->lamps || !l->lamp_sum)
+    l->area_lights = malloc((l->area_light_count + 1u) * sizeof *l->area_lights);
+    l->area_light_sum = malloc((l->area_light_count + 1u) * sizeof *l->area_light_sum);
+    if (!l->area_lights || !l->area_light_sum)
         return false;
-    for (uint32_t i = 0, k = 0; k < l->lamp_count; i++)
+    for (uint32_t i = 0, k = 0; k < l->area_light_count; i++)
         if (material_lights(side_material(s->m, s->g, 2 * i))) {
-            sum += (double)s->area[i] / area + 1.0 / l->lamp_count;
-            l->lamps[k] = i;
-            l->lamp_sum[k++] = sum;
+            sum += (double)s->area[i] / area + 1.0 / l->area_light_count;
+            l->area_lights[k] = i;
+            l->area_light_sum[k++] = sum;
         }
     return true;
 }
 
-bool lights_open(reach_search *s, const tracks *t, uint32_t frames, bool sky_light) {
+bool lights_open(dark_sides_search *s, const tracks *t, uint32_t frames, bool sky_light) {
     float center[3];
-    s->lights = (reach_lights){.t = t, .frames = frames, .sky = sky_light};
-    if (!find_lamps(s))
+    s->lights = (dark_sides_lights){.t = t, .frames = frames, .sky = sky_light};
+    if (!find_area_lights(s))
         return false;
-    s->lights.sources = t->light_count + (s->lights.lamp_count > 0) + sky_light;
+    s->lights.sources = t->light_count + (s->lights.area_light_count > 0) + sky_light;
     sky_sphere(s->m->lo, s->m->hi, center, &s->lights.radius);
     s->lights.center = vec_of(center);
     return true;
 }
 
-void lights_close(reach_lights *l) {
-    free(l->lamps);
-    free(l->lamp_sum);
+void lights_close(dark_sides_lights *l) {
+    free(l->area_lights);
+    free(l->area_light_sum);
 }
 
-bool lights_shine(const reach_lights *l) {
+bool lights_emit(const dark_sides_lights *l) {
     for (size_t i = 0; i < (size_t)l->frames * l->t->light_count; i++)
         if (mean_intensity(l->t->lights + i) > 0.0)
             return true;
-    return l->sky || l->lamp_count > 0;
+    return l->sky || l->area_light_count > 0;
 }
 
-static uint32_t choose_lamp(const reach_lights *l, float x) {
-    uint32_t low = 0, high = l->lamp_count - 1;
+static uint32_t choose_area_light(const dark_sides_lights *l, float x) {
+    uint32_t low = 0, high = l->area_light_count - 1;
     while (low < high) {
         const uint32_t middle = (low + high) / 2;
-        if (l->lamp_sum[middle] > 2.0 * (double)x)
+        if (l->area_light_sum[middle] > 2.0 * (double)x)
             high = middle;
         else
             low = middle + 1;
     }
-    return l->lamps[low];
+    return l->area_lights[low];
 }
 
-bool lights_leave(const reach_search *s, uint32_t ray, vec *origin, vec *direction) {
-    const reach_lights *all = &s->lights;
+bool lights_leave(const dark_sides_search *s, uint32_t ray, vec *origin, vec *direction) {
+    const dark_sides_lights *all = &s->lights;
     const uint32_t source = ray % all->sources, frame = (uint32_t)((uint64_t)ray * all->frames / s->light_rays);
     const float a = sequence(LIGHT_STREAM, ray, 0), b = sequence(LIGHT_STREAM, ray, 1), c = sequence(LIGHT_STREAM, ray, 2),
                 d = sequence(LIGHT_STREAM, ray, 3);
@@ -117,11 +117,11 @@ bool lights_leave(const reach_search *s, uint32_t ray, vec *origin, vec *directi
         *direction = (vec){-from.x, -from.y, -from.z};
         return true;
     }
-    if (source == all->t->light_count) { /* no dimension is left for the lamp and its side */
-        const uint32_t side = 2 * choose_lamp(all, sequence(ray, 0, 0)) + (sequence(ray, 0, 1) < 0.5f);
-        const ray_side lamp = side_of(s->g, side);
-        *origin = side_point(&lamp, a, b);
-        *direction = cosine_direction(lamp.normal, c, d);
+    if (source == all->t->light_count) { /* no dimension is left for the area light and its side */
+        const uint32_t side = 2 * choose_area_light(all, sequence(ray, 0, 0)) + (sequence(ray, 0, 1) < 0.5f);
+        const ray_side area_light = side_of(s->g, side);
+        *origin = side_point(&area_light, a, b);
+        *direction = cosine_direction(area_light.normal, c, d);
         return !ray_scene_covered(&s->rays, side, *origin);
     }
     const vit_light *l = light_of(all, source, frame);
@@ -142,17 +142,17 @@ static uint32_t pick(float u, uint32_t count) {
 }
 
 /* A point of an area light, on the side of it that `o` is on. False: something covers it there. */
-static bool lamp_point(const reach_search *s, uint32_t other, vec o, vec *at) {
-    const uint32_t lamp = 2 * choose_lamp(&s->lights, sequence(other, 1, 0));
-    const ray_side face = side_of(s->g, lamp);
+static bool lamp_point(const dark_sides_search *s, uint32_t other, vec o, vec *at) {
+    const uint32_t area_light = 2 * choose_area_light(&s->lights, sequence(other, 1, 0));
+    const ray_side face = side_of(s->g, area_light);
     const vec front = side_point(&face, sequence(other, 1, 1), sequence(other, 1, 2)), across = face.normal;
     const bool before = (o.x - front.x) * across.x + (o.y - front.y) * across.y + (o.z - front.z) * across.z > 0.0f;
     *at = before ? front : plus(front, -2.0f * s->g->ray_offset, across);
-    return !ray_scene_covered(&s->rays, lamp + !before, *at);
+    return !ray_scene_covered(&s->rays, area_light + !before, *at);
 }
 
-bool lights_ask(const reach_search *s, uint32_t side, const ray_side *from, uint32_t i) {
-    const reach_lights *all = &s->lights;
+bool lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i) {
+    const dark_sides_lights *all = &s->lights;
     const uint32_t source = pick(side_sequence(from, i, 2), all->sources), frame = pick(side_sequence(from, i, 3), all->frames);
     const vec n = from->normal, o = side_point(from, side_sequence(from, i, 0), side_sequence(from, i, 1));
     const uint32_t other = side + i; /* for other numbers */

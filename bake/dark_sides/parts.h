@@ -7,28 +7,28 @@
 #include <stdatomic.h>
 
 /* The tracks' lights, then the area lights if there are any, then the sky if it shines. */
-typedef struct reach_lights {
+typedef struct dark_sides_lights {
     const tracks *t;
     uint32_t frames, sources;
     bool sky;
-    uint32_t *lamps;  /* triangles that are area lights */
-    double *lamp_sum; /* weights of lamps 0 .. i, by their share of the area and of the number; 2 in all */
-    uint32_t lamp_count;
+    uint32_t *area_lights;  /* triangles that are area lights */
+    double *area_light_sum; /* weights of area lights 0 .. i, by their share of the area and of the number; 2 in all */
+    uint32_t area_light_count;
     vec center; /* of a sphere round the scene */
     float radius;
-} reach_lights;
+} dark_sides_lights;
 
-typedef struct reach_search {
+typedef struct dark_sides_search {
     geometry *g;
     const model *m;
     uint32_t sides;
     ray_scene rays;
-    reach_lights lights;
+    dark_sides_lights lights;
     float *area;         /* m2 a triangle */
     double whole;        /* m2 of all of them */
     atomic_ullong *flux; /* a side, direct, in fixed point of all lights' power */
     uint32_t light_rays; /* of step 1 */
-    uint32_t gathered;   /* rays a side in step 2, at least */
+    uint32_t gathered;   /* rays per side in step 2, at least */
     uint32_t *found;     /* sides that they found, those of side s from found_first[s] to found_first[s + 1] */
     uint32_t *found_first;
     float *direct, *irradiance, *next_irradiance;
@@ -37,38 +37,39 @@ typedef struct reach_search {
     bool *lit, *faint;         /* a side; faint: to be looked at more closely (step 4) */
     atomic_uint newly_reached; /* sides that light came to in the last turn of step 3 */
     atomic_ullong shot;        /* rays */
-} reach_search;
+} dark_sides_search;
 
 /* The side's part of the whole surface, both sides of all triangles. */
-double reach_part(const reach_search *s, uint32_t side);
+double dark_sides_part(const dark_sides_search *s, uint32_t side);
 /* What ray `i` of a side finds, and how far away. */
-uint32_t reach_look(const reach_search *s, uint32_t side, const ray_side *from, uint32_t i, float *distance);
+uint32_t dark_sides_look(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i, float *distance);
 
 /* dark_sides/light_paths.c. False: out of memory. */
-bool lights_open(reach_search *s, const tracks *t, uint32_t frames, bool sky_light);
-void lights_close(reach_lights *l);
+bool lights_open(dark_sides_search *s, const tracks *t, uint32_t frames, bool sky_light);
+void lights_close(dark_sides_lights *l);
 /* Some light shines in some frame. */
-bool lights_shine(const reach_lights *l);
+bool lights_emit(const dark_sides_lights *l);
 /* Ray `ray` of all that leave lights, spread over sources and frames. False: it does not leave. */
-bool lights_leave(const reach_search *s, uint32_t ray, vec *origin, vec *direction);
+bool lights_leave(const dark_sides_search *s, uint32_t ray, vec *origin, vec *direction);
 /* Does some light in some frame shine on the side, by shadow ray `i`? */
-bool lights_ask(const reach_search *s, uint32_t side, const ray_side *from, uint32_t i);
+bool lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i);
 
 /* dark_sides/edges.c: which sides of a patch, triangles first .. first + count - 1, hang together: neighbours across an edge
  * that only they share, on the same side of the surface. */
 #define PATCH_TRIANGLES 128u
 #define PATCH_SIDES (2u * PATCH_TRIANGLES)
-typedef struct reach_patch {
+typedef struct dark_sides_patch {
     uint32_t first, count;       /* triangles */
     uint16_t group[PATCH_SIDES]; /* a side, from 2 * first on: the least side that it hangs together with */
-} reach_patch;
-void patch_link(const geometry *g, uint32_t first, uint32_t count, reach_patch *out);
+} dark_sides_patch;
+void patch_link(const geometry *g, uint32_t first, uint32_t count, dark_sides_patch *out);
 
 /* dark_sides/ask.c, both by what is known and for patch `patch`. */
-/* Sets s->faint: hanging together with sides that some light comes to, but having less than REACH_FAINT thresholds of it. */
-#define REACH_FAINT 1000.0f
-void reach_find_faint(void *search, uint32_t patch);
+/* Sets s->faint: hanging together with sides that some light comes to, but having less than DARK_SIDES_FAINT thresholds of it.
+ */
+#define DARK_SIDES_FAINT 1000.0f
+void dark_sides_find_faint(void *search, uint32_t patch);
 /* Sets s->lit, by further rays where it is not known. */
-void reach_ask_patch(void *search, uint32_t patch);
+void dark_sides_ask_patch(void *search, uint32_t patch);
 
 #endif

@@ -55,21 +55,22 @@ static bool lies_on(const double p[3], const face *f, double near) {
     return true;
 }
 
-/* Whether the middle of `lamp`, or a place half-way from there to a corner or an edge's middle, lies on f. */
-static bool shares_plane(const face *lamp, const face *f, double near) {
+/* Whether the middle of the face of an area light, or a place half-way from there to a corner or an edge's middle, lies on f.
+ */
+static bool shares_plane(const face *area_light, const face *f, double near) {
     for (int x = 0; x < 3; x++)
-        if (lamp->low[x] > f->high[x] + near || lamp->high[x] < f->low[x] - near)
+        if (area_light->low[x] > f->high[x] + near || area_light->high[x] < f->low[x] - near)
             return false;
-    if (fabs(dot(lamp->normal, f->normal)) < SAME_WAY)
+    if (fabs(dot(area_light->normal, f->normal)) < SAME_WAY)
         return false;
     double middle[3], p[3];
     for (int x = 0; x < 3; x++)
-        middle[x] = (lamp->corner[0][x] + lamp->corner[1][x] + lamp->corner[2][x]) / 3.0;
+        middle[x] = (area_light->corner[0][x] + area_light->corner[1][x] + area_light->corner[2][x]) / 3.0;
     if (lies_on(middle, f, near))
         return true;
     for (int k = 0; k < 3; k++)
         for (int edge = 0; edge < 2; edge++) {
-            const double *a = lamp->corner[k], *b = lamp->corner[(k + edge) % 3];
+            const double *a = area_light->corner[k], *b = area_light->corner[(k + edge) % 3];
             for (int x = 0; x < 3; x++)
                 p[x] = (middle[x] + (a[x] + b[x]) / 2.0) / 2.0;
             if (lies_on(p, f, near))
@@ -89,14 +90,14 @@ static double side_of(const face *f, const vit_camera *cameras, uint32_t frames)
     return before >= 0 ? 1.0 : -1.0;
 }
 
-static void mark_shared(const model *m, face *lamps, size_t count, double near) {
+static void mark_shared(const model *m, face *area_lights, size_t count, double near) {
     double low[3], high[3];
     for (int x = 0; x < 3; x++) {
-        low[x] = lamps[0].low[x];
-        high[x] = lamps[0].high[x];
+        low[x] = area_lights[0].low[x];
+        high[x] = area_lights[0].high[x];
         for (size_t i = 1; i < count; i++) {
-            low[x] = fmin(low[x], lamps[i].low[x]);
-            high[x] = fmax(high[x], lamps[i].high[x]);
+            low[x] = fmin(low[x], area_lights[i].low[x]);
+            high[x] = fmax(high[x], area_lights[i].high[x]);
         }
     }
     for (uint32_t t = 0; t < m->triangles; t++) {
@@ -107,7 +108,7 @@ static void mark_shared(const model *m, face *lamps, size_t count, double near) 
         for (int x = 0; x < 3; x++)
             apart |= f.low[x] > high[x] + near || f.high[x] < low[x] - near;
         for (size_t i = 0; i < count && !apart; i++)
-            lamps[i].shared = lamps[i].shared || shares_plane(&lamps[i], &f, near);
+            area_lights[i].shared = area_lights[i].shared || shares_plane(&area_lights[i], &f, near);
     }
 }
 
@@ -118,9 +119,9 @@ static bool same_edge(const face *a, int i, const face *b, int k) {
 }
 
 /* A lid of a closed body that stands under a ceiling shines on nothing: only sheets, which end somewhere, are panels. Bodies
- * are triangles that hang together by whole edges; open[body[i]] says whether the one of lamps[i] has an edge of one triangle
- * alone. */
-static void keep_sheets(face *lamps, size_t count, size_t *body, bool *open) {
+ * are triangles that hang together by whole edges; open[body[i]] says whether the one of area_lights[i] has an edge of one
+ * triangle alone. */
+static void keep_sheets(face *area_lights, size_t count, size_t *body, bool *open) {
     for (size_t i = 0; i < count; i++)
         body[i] = i;
     for (size_t i = 0; i < count; i++)
@@ -128,7 +129,7 @@ static void keep_sheets(face *lamps, size_t count, size_t *body, bool *open) {
             bool alone = true;
             for (size_t k = 0; k < count; k++)
                 for (int f = 0; f < 3 && k != i; f++)
-                    if (same_edge(&lamps[i], e, &lamps[k], f)) {
+                    if (same_edge(&area_lights[i], e, &area_lights[k], f)) {
                         alone = false;
                         size_t a = i, b = k;
                         while (body[a] != a)
@@ -147,21 +148,21 @@ static void keep_sheets(face *lamps, size_t count, size_t *body, bool *open) {
         open[first] = open[first] || open[i];
     }
     for (size_t i = 0; i < count; i++)
-        lamps[i].shared = lamps[i].shared && open[body[i]];
+        area_lights[i].shared = area_lights[i].shared && open[body[i]];
 }
 
 /* Each vertex once, whichever of its triangles comes first. */
-static uint32_t move_shared(model *m, const face *lamps, size_t count, bool *done, double way) {
+static uint32_t move_shared(model *m, const face *area_lights, size_t count, bool *done, double way) {
     uint32_t moved = 0;
     for (size_t i = 0; i < count; i++) {
-        if (!lamps[i].shared)
+        if (!area_lights[i].shared)
             continue;
         moved++;
         for (size_t k = 0; k < 3; k++) {
-            const uint32_t v = m->index[3 * (size_t)lamps[i].triangle + k];
+            const uint32_t v = m->index[3 * (size_t)area_lights[i].triangle + k];
             float *p = m->position + 3 * (size_t)v;
             for (int x = 0; x < 3 && !done[v]; x++) {
-                p[x] = (float)((double)p[x] + way * lamps[i].side * lamps[i].normal[x]);
+                p[x] = (float)((double)p[x] + way * area_lights[i].side * area_lights[i].normal[x]);
                 m->lo[x] = fmin(m->lo[x], (double)p[x]);
                 m->hi[x] = fmax(m->hi[x], (double)p[x]);
             }
@@ -171,32 +172,32 @@ static uint32_t move_shared(model *m, const face *lamps, size_t count, bool *don
     return moved;
 }
 
-bool lamp_plane(model *m, const vit_camera *cameras, uint32_t frames, float ray_offset, uint32_t *moved) {
+bool area_light_plane(model *m, const vit_camera *cameras, uint32_t frames, float ray_offset, uint32_t *moved) {
     uint32_t count = 0;
     *moved = 0;
     for (uint32_t t = 0; t < m->triangles; t++)
         count += emits(m, t);
-    if (count == 0 || count > LAMP_PLANE_MOST)
+    if (count == 0 || count > AREA_LIGHT_PLANE_MOST)
         return true;
-    face *lamps = malloc(count * sizeof *lamps);
+    face *area_lights = malloc(count * sizeof *area_lights);
     size_t *body = malloc(count * sizeof *body), n = 0;
     bool *done = calloc(m->vertices, sizeof *done), *open = calloc(count, sizeof *open);
-    const bool fine = lamps && body && done && open;
+    const bool fine = area_lights && body && done && open;
     for (uint32_t t = 0; fine && t < m->triangles; t++)
-        if (emits(m, t) && face_of(m, t, &lamps[n])) {
-            lamps[n].side = side_of(&lamps[n], cameras, frames);
+        if (emits(m, t) && face_of(m, t, &area_lights[n])) {
+            area_lights[n].side = side_of(&area_lights[n], cameras, frames);
             n++;
         }
     bool any = false;
     if (n > 0)
-        mark_shared(m, lamps, n, SAME_PLANE * (double)ray_offset);
+        mark_shared(m, area_lights, n, SAME_PLANE * (double)ray_offset);
     for (size_t i = 0; i < n; i++)
-        any |= lamps[i].shared;
+        any |= area_lights[i].shared;
     if (any) {
-        keep_sheets(lamps, n, body, open);
-        *moved = move_shared(m, lamps, n, done, LAMP_PLANE * (double)ray_offset);
+        keep_sheets(area_lights, n, body, open);
+        *moved = move_shared(m, area_lights, n, done, AREA_LIGHT_PLANE * (double)ray_offset);
     }
-    free(lamps);
+    free(area_lights);
     free(body);
     free(done);
     free(open);

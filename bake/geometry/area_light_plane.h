@@ -7,11 +7,11 @@
 #include <stdbool.h>
 
 /* A panel that a modeller put into the plane of a ceiling is in one place with it: which of the two a ray meets is up to
- * rounding, and the panel's light is covered where the ceiling is met. Such triangles that emit move by LAMP_PLANE ray offsets,
- * `ray_offset` metres each, to the side that most of the path's `frames` cameras are on; lids of closed bodies stay. *moved:
- * how many; none where more than LAMP_PLANE_MOST emit. False: out of memory, and nothing has moved. */
-#define LAMP_PLANE 16.0
-#define LAMP_PLANE_MOST 4096u
-bool lamp_plane(model *m, const vit_camera *cameras, uint32_t frames, float ray_offset, uint32_t *moved);
+ * rounding, and the panel's light is covered where the ceiling is met. Such triangles that emit move by AREA_LIGHT_PLANE ray
+ * offsets, `ray_offset` metres each, to the side that most of the path's `frames` cameras are on; lids of closed bodies stay.
+ * *moved: how many; none where more than AREA_LIGHT_PLANE_MOST emit. False: out of memory, and nothing has moved. */
+#define AREA_LIGHT_PLANE 16.0
+#define AREA_LIGHT_PLANE_MOST 4096u
+bool area_light_plane(model *m, const vit_camera *cameras, uint32_t frames, float ray_offset, uint32_t *moved);
 
 #endif

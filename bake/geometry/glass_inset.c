@@ -76,7 +76,7 @@ static void draw_in(const model *m, corner_at *at, size_t count, double gap) {
             at[i].p[k] = (float)((double)at[i].p[k] - way * sum[k] / length);
 }
 
-bool glass_gap(model *m, float ray_offset) {
+bool glass_inset(model *m, float ray_offset) {
     size_t corners = 0;
     for (uint32_t t = 0; t < m->triangles; t++)
         corners += m->materials[m->material[t]].kind == VIT_GLASS ? 3 : 0;
@@ -96,7 +96,7 @@ bool glass_gap(model *m, float ray_offset) {
     for (size_t first = 0, end; first < corners; first = end) {
         for (end = first + 1; end < corners && !memcmp(at[end].p, at[first].p, sizeof at->p); end++)
             ;
-        draw_in(m, at + first, end - first, GLASS_GAP * (double)ray_offset);
+        draw_in(m, at + first, end - first, GLASS_INSET * (double)ray_offset);
     }
     for (size_t i = 0; i < corners; i++)
         memcpy(m->position + 3 * (size_t)m->index[at[i].corner], at[i].p, sizeof at->p);

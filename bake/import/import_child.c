@@ -18,8 +18,8 @@
 #endif
 #endif
 
-/* Processor time for a mesh file and what it refers to: seconds, seconds a MiB of files, texels a second. Sibenik's 9 MiB take
- * 1 s. */
+/* Processor time for a mesh file and what it refers to: seconds, seconds a MiB of files, texels per second. Sibenik's 9 MiB
+ * take 1 s. */
 enum { LEAST_SECONDS = 8, SECONDS_A_MIB = 4, TEXELS_A_SECOND = 1 << 22 };
 /* Memory beyond what the process has: MiB, and for each MiB of files. Text of an OBJ file becomes 30 times as much, a packed
  * file more. */

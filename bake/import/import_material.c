@@ -71,9 +71,9 @@ static void read_texture(const importer *im, material_use *use, const struct aiM
 
 /* Diffuse reflectance, before import_shine() has told what of it is not diffuse. */
 static void read_color(importer *im, material_use *use, const struct aiMaterial *ai) {
-    float color[4] = {0.8f, 0.8f, 0.8f, 1.0f}, gloss;
+    float color[4] = {0.8f, 0.8f, 0.8f, 1.0f}, specular;
     /* In glTF's specular-glossiness extension the base colour is a placeholder. */
-    const bool glossy = import_floats(ai, AI_MATKEY_GLOSSINESS_FACTOR, &gloss, 1);
+    const bool glossy = import_floats(ai, AI_MATKEY_GLOSSINESS_FACTOR, &specular, 1);
     if (glossy || !import_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
         (void)import_floats(ai, AI_MATKEY_COLOR_DIFFUSE, color, 3);
     if (use->image[0] && color[0] == 0.0f && color[1] == 0.0f && color[2] == 0.0f) {
@@ -143,7 +143,7 @@ static void apply_override(importer *im, material_use *use) {
         for (int k = 0; k < 3 && o->has_emission; k++)
             use->m.emission[k] = (float)o->emission[k];
         use->m.emits_by_file = use->m.emits_by_file && !o->has_emission;
-        import_override_shine(im, &use->m, o);
+        import_override_specular(im, &use->m, o);
         if (o->has_area_light)
             use->m.area_light = o->area_light;
         if (o->has_cutoff) {
@@ -188,7 +188,7 @@ bool import_material(importer *im, unsigned ai_index, const float tint[3], mater
     if (!import_shine(im, *use, ai))
         return false;
     apply_override(im, *use);
-    import_settle_shine(&(*use)->m);
+    import_settle_specular(&(*use)->m);
     import_settle_holes(im, *use, ai);
     return true;
 }

@@ -113,12 +113,12 @@ static bool read_principled(importer *im, material_use *use, const mtl *m) {
     float base[3], mean[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     const float metallic = m->illum == 3 ? m->ambient[0] : 0.0f, roughness = 1.0f - sqrtf(m->exponent / 1000.0f);
     memcpy(base, use->m.albedo, sizeof base);
-    if (use->image[0] && metallic > 0.0f && glossy_exponent(roughness) > 0.0f &&
+    if (use->image[0] && metallic > 0.0f && specular_exponent(roughness) > 0.0f &&
         !import_texture_mean(im, use->image, NULL, true, mean))
         return false;
     for (int i = 0; i < 3; i++)
         mean[i] *= base[i];
-    glossy_from_metallic(&use->m, base, mean, metallic, roughness);
+    specular_from_metallic(&use->m, base, mean, metallic, roughness);
     im->m->principled++;
     return true;
 }
@@ -127,7 +127,7 @@ static bool read_principled(importer *im, material_use *use, const mtl *m) {
  * write is not always meant: a mirror must reflect more than it scatters, glass must be transparent by d or Tf, or have no
  * colour of its own. The Cornell box "Glossy" (illum 2, Ks 0.9 and 0.8, Ns 40) has lobes on sphere and box; Sibenik (illum 1,
  * Ks 0) none, its panes of d 0.5 stay as they are. Of a closed body, Tf is what its two surfaces together let pass. */
-static bool read_shine_mtl(importer *im, material_use *use, const struct aiMaterial *ai) {
+static bool read_specular_mtl(importer *im, material_use *use, const struct aiMaterial *ai) {
     mtl m = read_mtl(ai);
     model_material *to = &use->m;
     const bool emits = !is_black(to->emission), refracts = m.illum == 6 || m.illum == 7;
@@ -196,7 +196,7 @@ static void read_glass(material_use *use, const struct aiMaterial *ai, const flo
 
 /* KHR_materials_pbrSpecularGlossiness. */
 static void make_specular(model_material *m, const float base[3], const float specular[3], float glossiness) {
-    const float exponent = glossy_exponent(1.0f - glossiness);
+    const float exponent = specular_exponent(1.0f - glossiness);
     for (int i = 0; i < 3; i++) {
         m->albedo[i] = exponent > 0.0f ? base[i] * (1.0f - largest(specular)) : base[i];
         m->specular[i] = exponent > 0.0f ? specular[i] : 0.0f;
@@ -205,7 +205,7 @@ static void make_specular(model_material *m, const float base[3], const float sp
 }
 
 /* Roughness and metalness may have textures, of which the mean over all texels is taken: lobes have none. */
-static bool read_shine_gltf(importer *im, material_use *use, const struct aiMaterial *ai) {
+static bool read_specular_gltf(importer *im, material_use *use, const struct aiMaterial *ai) {
     float base[3], mean[4], parts[4], metallic = 1.0f, roughness = 1.0f, glossiness, specular[3] = {1.0f, 1.0f, 1.0f};
     memcpy(base, use->m.albedo, sizeof base);
     if (import_floats(ai, AI_MATKEY_GLOSSINESS_FACTOR, &glossiness, 1)) {
@@ -225,7 +225,7 @@ static bool read_shine_gltf(importer *im, material_use *use, const struct aiMate
     metallic = import_clamp(metallic * parts[2], 1.0f);
     const bool glass = is_transmissive(&use->m, ai);
     mean[0] = mean[1] = mean[2] = 1.0f;
-    if (use->image[0] && (glass || (metallic > 0.0f && glossy_exponent(roughness) > 0.0f)) &&
+    if (use->image[0] && (glass || (metallic > 0.0f && specular_exponent(roughness) > 0.0f)) &&
         !import_texture_mean(im, use->image, NULL, true, mean))
         return false;
     for (int i = 0; i < 3; i++)
@@ -233,12 +233,12 @@ static bool read_shine_gltf(importer *im, material_use *use, const struct aiMate
     if (glass)
         read_glass(use, ai, mean);
     else
-        glossy_from_metallic(&use->m, base, mean, metallic, roughness);
+        specular_from_metallic(&use->m, base, mean, metallic, roughness);
     return true;
 }
 
 bool import_shine(importer *im, material_use *use, const struct aiMaterial *ai) {
-    return im->gltf ? read_shine_gltf(im, use, ai) : read_shine_mtl(im, use, ai);
+    return im->gltf ? read_specular_gltf(im, use, ai) : read_specular_mtl(im, use, ai);
 }
 
 /* ---- the scene file ---- */
@@ -264,7 +264,7 @@ static void change_kind(model_material *m, int kind) {
     m->kind = (uint32_t)kind;
 }
 
-void import_override_shine(importer *im, model_material *m, const scene_material *o) {
+void import_override_specular(importer *im, model_material *m, const scene_material *o) {
     if (o->has_kind)
         change_kind(m, o->kind);
     const bool glass = is_glass(m), matt = m->kind == VIT_MATTE;
@@ -286,7 +286,7 @@ void import_override_shine(importer *im, model_material *m, const scene_material
                     o->line, o->name);
 }
 
-void import_settle_shine(model_material *m) {
+void import_settle_specular(model_material *m) {
     float most = 0.0f;
     for (int i = 0; i < 3; i++) {
         if (m->kind != VIT_MATTE)

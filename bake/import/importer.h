@@ -125,9 +125,9 @@ float import_clamp(float value, float most); /* to 0..most; NaN is 0 */
  * texture that is needed (strict), or out of memory. */
 bool import_shine(importer *im, material_use *use, const struct aiMaterial *ai);
 /* What the scene file says of them. */
-void import_override_shine(importer *im, model_material *m, const scene_material *o);
+void import_override_specular(importer *im, model_material *m, const scene_material *o);
 /* Last: no more is reflected than arrives, and nothing stays that the kind has no use for. */
-void import_settle_shine(model_material *m);
+void import_settle_specular(model_material *m);
 
 /* import_texture_mean.c: means over all texels, 0..1, of colours (as if they were sRGB if `srgb`) and alpha. All 1 where the
  * image is missing or broken, with a warning that names `material` (not strict), or without one if that is NULL. */

@@ -6,16 +6,16 @@
 #define METAL 0.9f       /* what counts as one, and as smooth, where mirrors are concerned */
 #define SMOOTH 0.1f
 
-float glossy_exponent(float roughness) {
+float specular_exponent(float roughness) {
     const double alpha = (double)roughness * (double)roughness;
     const double m = alpha > 0.0 ? 0.5 / (alpha * alpha) - 2.0 : (double)VIT_MAX_EXPONENT;
     return m < 1.0 ? 0.0f : (float)fmin(m, (double)VIT_MAX_EXPONENT);
 }
 
-void glossy_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness) {
+void specular_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness) {
     const bool emits = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
     const bool mirror = metallic >= METAL && roughness <= SMOOTH && !emits;
-    const float exponent = glossy_exponent(roughness);
+    const float exponent = specular_exponent(roughness);
     m->kind = mirror ? VIT_MIRROR : VIT_MATTE;
     m->exponent = mirror || exponent == 0.0f ? 1.0f : exponent;
     for (int i = 0; i < 3; i++) {

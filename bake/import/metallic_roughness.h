@@ -8,12 +8,12 @@
 /* The lobe that has the peak of glTF's (GGX) at normal incidence: (m + 2) / (2 pi) = 1 / (4 pi alpha^2), alpha = roughness^2.
  * The mirrored direction turns twice as far as the half vector, so m is a quarter of what Blinn's lobe would have. At most
  * VIT_MAX_EXPONENT. 0: wider than m = 1, from roughness 0.64 on; no more like a matt surface than a lobe is
- * (tests/numeric/test_glossy_mapping.c has the errors). */
-float glossy_exponent(float roughness);
+ * (tests/numeric/test_specular_mapping.c has the errors). */
+float specular_exponent(float roughness);
 
 /* Sets kind, albedo, specular and exponent. base: of the material, multiplied by the texture where there is one; mean:
  * likewise, the texture's mean taken for it, since reflectances of lobes and mirrors have no texture. Metals (metallic >= 0.9)
  * of roughness <= 0.1 become mirrors, unless they emit; wide lobes matt surfaces of the base colour. */
-void glossy_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness);
+void specular_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness);
 
 #endif

@@ -9,7 +9,7 @@
 
 #define OPEN_RAYS (1u << 20) /* in all */
 #define OPEN_MOST 64u        /* a side */
-#define OPEN_FAR 0.05f       /* of the scene's diagonal: light that goes so far lights more than what touches the lamp */
+#define OPEN_FAR 0.05f       /* of the scene's diagonal: light that goes so far lights more than what touches the area light */
 #define EYES_MOST 64u        /* cameras of the path that are asked what they see, and rays of each */
 #define OPEN_STEPS 4         /* weights are 1, 1/2, 1/4, 1/8: no photon is more than 8 times as strong as it would be */
 #define CLASSES (6 * OPEN_STEPS)
@@ -63,7 +63,7 @@ static vec3 point_of(const photon_scene *s, uint32_t side, const float b[3]) {
 #define ESCAPES (VIT_NONE - 1) /* instead of a side that shines: anything else, or nothing */
 
 typedef struct opening {
-    const emitters *e;
+    const area_lights *e;
     photon_rays rays;
     uint32_t tries;
     float far; /* m */
@@ -177,7 +177,7 @@ static int open_step(double open) {
 }
 
 /* From how open sides lie to the sum of their weights; covered and enclosed ones go. */
-static void sum_up(emitters *e) {
+static void sum_up(area_lights *e) {
     double sum = 0;
     uint32_t kept = 0;
     for (uint32_t i = 0; i < e->count; i++) {
@@ -198,7 +198,7 @@ static void sum_up(emitters *e) {
 }
 
 /* Makes what `o` needs; false: out of memory, or Embree fails. */
-static bool open_up(opening *o, emitters *out, uint32_t count, unsigned threads) {
+static bool open_up(opening *o, area_lights *out, uint32_t count, unsigned threads) {
     o->tries = OPEN_RAYS / count < 1 ? 1 : OPEN_RAYS / count < OPEN_MOST ? OPEN_RAYS / count : OPEN_MOST;
     out->side = malloc(count * sizeof *out->side);
     out->sum = malloc(count * sizeof *out->sum);
@@ -208,9 +208,9 @@ static bool open_up(opening *o, emitters *out, uint32_t count, unsigned threads)
     return out->side && out->sum && out->step && o->lights && o->escapes && photon_rays_open(&out->scene, threads, &o->rays);
 }
 
-vit_status emitters_find(const photon_scene *s, const vit_camera *cameras, uint32_t frames, unsigned threads, emitters *out,
-                         vit_text *why) {
-    *out = (emitters){.scene = *s};
+vit_status area_lights_find(const photon_scene *s, const vit_camera *cameras, uint32_t frames, unsigned threads,
+                            area_lights *out, vit_text *why) {
+    *out = (area_lights){.scene = *s};
     uint32_t count = 0;
     for (uint32_t side = 0; side < 2 * s->triangle_count; side++)
         count += shines(s, side);
@@ -229,24 +229,24 @@ vit_status emitters_find(const photon_scene *s, const vit_camera *cameras, uint3
         sum_up(out);
     } else {
         snprintf(why->text, sizeof why->text, "area lights: out of memory, or Embree fails");
-        emitters_free(out);
+        area_lights_free(out);
     }
     free(o.lights);
     free(o.escapes);
     return status;
 }
 
-void emitters_free(emitters *e) {
+void area_lights_free(area_lights *e) {
     free(e->side);
     free(e->sum);
     free(e->step);
-    *e = (emitters){0};
+    *e = (area_lights){0};
 }
 
 /* x chooses the side and, what is left of it, goes on over the triangle: sides that lie together stay together, and points that
  * are even over the square are even over one light of a few triangles. */
-static emitter_place place_among(const photon_scene *s, const uint32_t *sides, const double *sum, uint32_t count, double x,
-                                 double y) {
+static area_light_point place_among(const photon_scene *s, const uint32_t *sides, const double *sum, uint32_t count, double x,
+                                    double y) {
     const double total = sum[count - 1], at = x * total;
     uint32_t low = 0, high = count - 1;
     while (low < high) {
@@ -260,14 +260,14 @@ static emitter_place place_among(const photon_scene *s, const uint32_t *sides, c
     const uint32_t side = sides[low];
     float b[3];
     triangle_weights(fmin(fmax((at - before) / weight, 0.0), 1.0), y, b);
-    emitter_place p = {.position = point_of(s, side, b), .normal = side_normal(s, side), .triangle = side / 2};
+    area_light_point p = {.position = point_of(s, side, b), .normal = side_normal(s, side), .triangle = side / 2};
     p.area = (float)(side_area(s, side) * total / weight);
     if (photon_opaque_place(s, side / 2, b))
         p.power = vec3_scale(vec3_load(side_material(s, side)->emission), p.area);
     return p;
 }
 
-emitter_place emitters_place(const emitters *e, double x, double y) {
+area_light_point area_lights_point(const area_lights *e, double x, double y) {
     return place_among(&e->scene, e->side, e->sum, e->count, x, y);
 }
 
@@ -286,12 +286,12 @@ typedef struct class {
     uint32_t points; /* of each set; 0: it has some of those of the rest, all classes that are too small for one */
 } class;
 
-static int class_of(const emitters *e, uint32_t i) {
+static int class_of(const area_lights *e, uint32_t i) {
     return facing(side_normal(&e->scene, e->side[i])) * OPEN_STEPS + e->step[i];
 }
 
 /* The last class is the rest. All share the two arrays; the rest's parts begin behind the others'. */
-static void sort_sides(const emitters *e, uint32_t *side, double *sum, class all[CLASSES + 1]) {
+static void sort_sides(const area_lights *e, uint32_t *side, double *sum, class all[CLASSES + 1]) {
     memset(all, 0, (CLASSES + 1) * sizeof *all);
     for (int fill = 0; fill < 2; fill++) {
         for (uint32_t i = 0; i < e->count; i++) {
@@ -312,7 +312,7 @@ static void sort_sides(const emitters *e, uint32_t *side, double *sum, class all
     }
 }
 
-static void join_rest(const emitters *e, class all[CLASSES + 1]) {
+static void join_rest(const area_lights *e, class all[CLASSES + 1]) {
     class *rest = all + CLASSES;
     double sum = 0;
     for (uint32_t i = 0; i < e->count; i++) {
@@ -330,7 +330,7 @@ static double weight_of(const class *c) {
 
 /* Every set has as many points of a class as any other, so that all shine alike in each of six directions, and as much as they
  * should: by weight, what is left to the largest remainders. */
-static void share_points(const emitters *e, uint32_t samples, class all[CLASSES + 1]) {
+static void share_points(const area_lights *e, uint32_t samples, class all[CLASSES + 1]) {
     const double one = e->sum[e->count - 1] / samples; /* weight for a point */
     double rest = 0.0;
     uint32_t left = samples;
@@ -354,42 +354,43 @@ static void share_points(const emitters *e, uint32_t samples, class all[CLASSES 
 }
 
 /* Of the side of a point. */
-static int class_at(const emitters *e, const emitter_place *p) {
+static int class_at(const area_lights *e, const area_light_point *p) {
     return class_of(e, place_in_list(e->side, e->count, side_met(&e->scene, p->triangle, vec3_scale(p->normal, -1.0f))));
 }
 
-static vit_emitter emitter_of(const emitters *e, emitter_place p, float share) {
-    return (vit_emitter){.position = {p.position.x, p.position.y, p.position.z},
-                         .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
-                         .normal = {p.normal.x, p.normal.y, p.normal.z},
-                         .near2 = side_material(&e->scene, 2 * p.triangle)->near2,
-                         .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
+static vit_light_sample light_sample_of(const area_lights *e, area_light_point p, float share) {
+    return (vit_light_sample){.position = {p.position.x, p.position.y, p.position.z},
+                              .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
+                              .normal = {p.normal.x, p.normal.y, p.normal.z},
+                              .near2 = side_material(&e->scene, 2 * p.triangle)->near2,
+                              .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
 }
 
 /* Point i of a class in all sets. Which way round the sequence goes over the sides is free; so the halves of a rectangle, two
  * triangles, have points that make up for each other best (tests/numeric/test_soft_light.c). */
-static emitter_place place_set(const emitters *e, const class *c, uint32_t i) {
+static area_light_point place_set(const area_lights *e, const class *c, uint32_t i) {
     double x, y;
     sobol_point(c->points, i / c->points, i % c->points, &x, &y);
     return place_among(&e->scene, c->side, c->sum, c->count, x, 1 - y);
 }
 
-static void place_class(const emitters *e, const class *c, uint32_t samples, vit_emitter *out) {
+static void place_class(const area_lights *e, const class *c, uint32_t samples, vit_light_sample *out) {
     const float share = 1.0f / (float)c->points;
     for (uint32_t i = 0; i < VIT_PATTERNS * c->points; i++)
-        out[i / c->points * samples + i % c->points] = emitter_of(e, place_set(e, c, i), share);
+        out[i / c->points * samples + i % c->points] = light_sample_of(e, place_set(e, c, i), share);
 }
 
 /* The rest's points in all sets together. */
 typedef struct rest_points {
-    emitter_place place[VIT_PATTERNS * CLASSES]; /* there are no more than classes that are too small for a point in each set */
+    area_light_point
+        place[VIT_PATTERNS * CLASSES]; /* there are no more than classes that are too small for a point in each set */
     int class[VIT_PATTERNS * CLASSES];
     uint32_t of_class[CLASSES];
     double whole[CLASSES], found[CLASSES]; /* W/sr summed over channels, of all sets together */
 } rest_points;
 
 /* A class that has come off without a point takes one over from the class that has most. */
-static void give_all_points(const emitters *e, const class all[CLASSES + 1], uint32_t count, rest_points *r) {
+static void give_all_points(const area_lights *e, const class all[CLASSES + 1], uint32_t count, rest_points *r) {
     for (int k = 0; k < CLASSES; k++) {
         int most = 0;
         for (int i = 1; i < CLASSES; i++)
@@ -406,9 +407,9 @@ static void give_all_points(const emitters *e, const class all[CLASSES + 1], uin
     }
 }
 
-/* All sets together have of each class of the rest as much as they should, whichever points they have. Lamps with holes are
- * left alone. */
-static void place_rest(const emitters *e, const class all[CLASSES + 1], uint32_t samples, vit_emitter *out) {
+/* All sets together have of each class of the rest as much as they should, whichever points they have. Area lights with holes
+ * are left alone. */
+static void place_rest(const area_lights *e, const class all[CLASSES + 1], uint32_t samples, vit_light_sample *out) {
     const class *c = all + CLASSES;
     const uint32_t count = VIT_PATTERNS * c->points;
     const double share = 1.0 / c->points;
@@ -435,11 +436,11 @@ static void place_rest(const emitters *e, const class all[CLASSES + 1], uint32_t
     for (uint32_t i = 0; i < count; i++) {
         const int k = r.class[i];
         const double factor = whole > 0 ? r.whole[k] / r.found[k] * (whole / some) : 1.0;
-        out[i / c->points * samples + i % c->points] = emitter_of(e, r.place[i], (float)(share * factor));
+        out[i / c->points * samples + i % c->points] = light_sample_of(e, r.place[i], (float)(share * factor));
     }
 }
 
-void emitters_near(const emitters *e, uint32_t samples, vit_material *materials) {
+void area_lights_near(const area_lights *e, uint32_t samples, vit_material *materials) {
     for (uint32_t i = 0; i < e->count; i++) {
         const uint32_t m = e->scene.attributes[e->side[i] / 2].material & VIT_MATERIAL_INDEX;
         const double area = e->sum[e->count - 1] / (samples * radiance_sum(materials + m)) * ldexp(1.0, e->step[i]);
@@ -447,7 +448,7 @@ void emitters_near(const emitters *e, uint32_t samples, vit_material *materials)
     }
 }
 
-vit_status emitters_sets(const emitters *e, uint32_t samples, vit_emitter *out, vit_text *why) {
+vit_status area_lights_sets(const area_lights *e, uint32_t samples, vit_light_sample *out, vit_text *why) {
     class all[CLASSES + 1];
     uint32_t *side = malloc(2 * (size_t)e->count * sizeof *side);
     double *sum = malloc(2 * (size_t)e->count * sizeof *sum);

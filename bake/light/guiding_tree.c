@@ -12,13 +12,13 @@
 #define HEAVY 8.0f /* heavier samples than so many mean ones weigh as much: one path is no reason to send all there */
 
 typedef struct box {
-    float low[GUIDE_DIMENSIONS], high[GUIDE_DIMENSIONS];
-    int halved[GUIDE_DIMENSIONS];
+    float low[GUIDING_DIMENSIONS], high[GUIDING_DIMENSIONS];
+    int halved[GUIDING_DIMENSIONS];
 } box;
 
 typedef struct building {
-    guide *g;
-    guide_sample *samples;
+    guiding_tree *g;
+    guiding_tree_sample *samples;
     uint32_t dimensions;
     float mean; /* weight of a sample */
 } building;
@@ -50,7 +50,8 @@ static uint32_t uneven(const building *b, const box *at, uint32_t begin, uint32_
 }
 
 /* Samples of the lower half first, either half in its order. Returns where the other begins. */
-static uint32_t part(const building *b, guide_sample *spare, uint32_t begin, uint32_t end, uint32_t dimension, float middle) {
+static uint32_t part(const building *b, guiding_tree_sample *spare, uint32_t begin, uint32_t end, uint32_t dimension,
+                     float middle) {
     uint32_t low = begin, high = 0;
     for (uint32_t i = begin; i < end; i++)
         if (b->samples[i].at[dimension] < middle)
@@ -69,12 +70,13 @@ static float weigh(const building *b, uint32_t begin, uint32_t end) {
 }
 
 /* share: of the guided paths in the box; size: of the cube. */
-static void halve(building *b, guide_sample *spare, const box *at, uint32_t begin, uint32_t end, double share, double size) {
-    guide *g = b->g;
+static void halve(building *b, guiding_tree_sample *spare, const box *at, uint32_t begin, uint32_t end, double share,
+                  double size) {
+    guiding_tree *g = b->g;
     const uint32_t me = g->count++;
-    const bool may = end - begin >= LEAST && g->count + 2 < GUIDE_NODES && weigh(b, begin, end) > 0.0f;
+    const bool may = end - begin >= LEAST && g->count + 2 < GUIDING_NODES && weigh(b, begin, end) > 0.0f;
     const uint32_t k = may ? uneven(b, at, begin, end) : VIT_NONE;
-    g->nodes[me] = (guide_node){.dimension = k};
+    g->nodes[me] = (guiding_tree_node){.dimension = k};
     if (k == VIT_NONE) {
         g->gain += share * (share / size);
         return;
@@ -86,15 +88,15 @@ static void halve(building *b, guide_sample *spare, const box *at, uint32_t begi
     high.halved[k]++;
     const uint32_t split = part(b, spare, begin, end, k, middle);
     const double lower = (double)weigh(b, begin, split), upper = (double)weigh(b, split, end),
-                 q = (lower + (double)DOUBT) / (lower + upper + 2.0 * (double)DOUBT), even = (double)GUIDE_EVENLY;
+                 q = (lower + (double)DOUBT) / (lower + upper + 2.0 * (double)DOUBT), even = (double)GUIDING_EVENLY;
     g->nodes[me].left = (float)(((1.0 - even) * share * q + even * 0.5 * size) / ((1.0 - even) * share + even * size));
     halve(b, spare, &low, begin, split, share * q, 0.5 * size);
     g->nodes[me].right = g->count;
     halve(b, spare, &high, split, end, share * (1.0 - q), 0.5 * size);
 }
 
-bool guide_build(guide_sample *samples, uint32_t count, uint32_t dimensions, guide *out) {
-    *out = (guide){0};
+bool guiding_tree_build(guiding_tree_sample *samples, uint32_t count, uint32_t dimensions, guiding_tree *out) {
+    *out = (guiding_tree){0};
     building b = {.g = out, .samples = samples, .dimensions = dimensions};
     uint32_t kept = 0;
     double sum = 0;
@@ -112,11 +114,11 @@ bool guide_build(guide_sample *samples, uint32_t count, uint32_t dimensions, gui
         sum += (double)samples[i].weight;
     }
     b.mean = (float)(sum / kept);
-    guide_sample *spare = malloc(kept * sizeof *spare);
-    out->nodes = malloc(GUIDE_NODES * sizeof *out->nodes);
+    guiding_tree_sample *spare = malloc(kept * sizeof *spare);
+    out->nodes = malloc(GUIDING_NODES * sizeof *out->nodes);
     if (!spare || !out->nodes) {
         free(spare);
-        guide_free(out);
+        guiding_tree_free(out);
         return false;
     }
     box all = {{0}, {0}, {0}};
@@ -124,22 +126,22 @@ bool guide_build(guide_sample *samples, uint32_t count, uint32_t dimensions, gui
         all.high[k] = 1.0f;
     halve(&b, spare, &all, 0, kept, 1.0, 1.0);
     free(spare);
-    guide_node *shorter = realloc(out->nodes, out->count * sizeof *shorter);
+    guiding_tree_node *shorter = realloc(out->nodes, out->count * sizeof *shorter);
     out->nodes = shorter ? shorter : out->nodes;
     return true;
 }
 
-void guide_free(guide *g) {
+void guiding_tree_free(guiding_tree *g) {
     free(g->nodes);
-    *g = (guide){0};
+    *g = (guiding_tree){0};
 }
 
-float guide_point(const guide *g, uint32_t paths, uint32_t i, uint32_t number, float at[GUIDE_DIMENSIONS]) {
+float guiding_tree_point(const guiding_tree *g, uint32_t paths, uint32_t i, uint32_t number, float at[GUIDING_DIMENSIONS]) {
     uint32_t random = pcg(number * 2u + 0x9e3779b9u), node = 0;
     double t = ((double)i + (double)random * 0x1p-32) / (double)paths, density = 1.0;
-    float low[GUIDE_DIMENSIONS] = {0}, size[GUIDE_DIMENSIONS] = {1, 1, 1, 1, 1, 1};
+    float low[GUIDING_DIMENSIONS] = {0}, size[GUIDING_DIMENSIONS] = {1, 1, 1, 1, 1, 1};
     while (g->nodes[node].dimension != VIT_NONE) {
-        const guide_node *n = g->nodes + node;
+        const guiding_tree_node *n = g->nodes + node;
         const double left = (double)n->left;
         const bool right = t >= left;
         size[n->dimension] *= 0.5f;
@@ -148,7 +150,7 @@ float guide_point(const guide *g, uint32_t paths, uint32_t i, uint32_t number, f
         low[n->dimension] += right ? size[n->dimension] : 0.0f;
         node = right ? n->right : node + 1;
     }
-    for (int k = 0; k < GUIDE_DIMENSIONS; k++) {
+    for (int k = 0; k < GUIDING_DIMENSIONS; k++) {
         random = pcg(random + 0x85ebca6bu);
         at[k] = low[k] + size[k] * unit_float(random);
         at[k] = float_min(at[k], 0x1.fffffep-1f);

@@ -76,8 +76,8 @@ static void plane_point(uint32_t i, double *x, double *y) {
 }
 
 /* From a point of a shining side, by the cosine: flux pi L dA. */
-static emission leave_surface(const photon_rays *rays, const emitters *area, uint32_t count, const double at[4]) {
-    const emitter_place from = emitters_place(area, at[0], at[1]);
+static emission leave_surface(const photon_rays *rays, const area_lights *area, uint32_t count, const double at[4]) {
+    const area_light_point from = area_lights_point(area, at[0], at[1]);
     if (photon_rays_covered(rays, from.triangle, from.position, from.normal))
         return (emission){.origin = from.position, .direction = from.normal};
     return (emission){.origin = from.position,
@@ -128,8 +128,8 @@ static emission leave_by(const photon_rays *rays, const photons_light *l, const 
 }
 
 static emission leave_guided(const photon_rays *rays, const photons_light *l, uint32_t i, uint32_t number) {
-    float at[GUIDE_DIMENSIONS];
-    const float density = guide_point(l->guide, l->paths, i, number, at);
+    float at[GUIDING_DIMENSIONS];
+    const float density = guiding_tree_point(l->guide, l->paths, i, number, at);
     const double from[4] = {(double)at[0] + 0x1p-25, (double)at[1] + 0x1p-25, (double)at[2], (double)at[3]};
     const uint32_t first = photon_emission_numbers(l);
     emission e = leave_by(rays, l, from);
@@ -213,7 +213,7 @@ static arrival from_light(const vit_light *light, vec3 p) {
 arrival photon_arrival(const photon_rays *rays, const photons_light *l, vec3 p, double x, double y) {
     arrival a = {.at = {below_one((float)x), below_one((float)y)}};
     if (l->area) {
-        const emitter_place from = emitters_place(l->area, x, y);
+        const area_light_point from = area_lights_point(l->area, x, y);
         const vec3 way = vec3_sub(p, from.position), d = vec3_unit(way);
         const float d2 = vec3_dot(way, way), facing = vec3_dot(d, from.normal);
         a.direction = vec3_scale(d, -1.0f);

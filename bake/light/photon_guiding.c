@@ -17,18 +17,18 @@
 #define MOST_PANES 4u    /* of thin glass between a place and a light */
 
 typedef struct finding {
-    const guides_input *in;
+    const photon_guiding_input *in;
     photon_rays rays;
     uint32_t sources; /* lights, area lights, sky */
     uint32_t groups;  /* of sources: path i is joined with those of group i % groups */
     uint32_t share;   /* sources of a group */
     vec3 around;
     uint32_t round;
-    guide_sample *samples; /* [share][PATHS], of the round */
-    double *sums;          /* of weights, likewise */
-    guide_sample **found;  /* a source: of all rounds, those that weigh anything */
-    uint32_t *count;       /* of them */
-    bool panes;            /* light comes through thin glass */
+    guiding_tree_sample *samples; /* [share][PATHS], of the round */
+    double *sums;                 /* of weights, likewise */
+    guiding_tree_sample **found;  /* a source: of all rounds, those that weigh anything */
+    uint32_t *count;              /* of them */
+    bool panes;                   /* light comes through thin glass */
 } finding;
 
 /* Random numbers of a path. */
@@ -67,7 +67,7 @@ static vec3 left(const finding *f, vec3 p, const arrival *a, float *mirror) {
         const photon_surface at = photon_surface_at(s, p, a->direction, t, triangle);
         if (at.material->kind != VIT_THIN_GLASS)
             return (vec3){0.0f, 0.0f, 0.0f};
-        *mirror = shine_at_glass(a->direction, at.normal, at.face, at.back, true, at.material->ior).mirror;
+        *mirror = specular_at_glass(a->direction, at.normal, at.face, at.back, true, at.material->ior).mirror;
         part = vec3_scale(vec3_times(part, vec3_load(at.material->specular)), 1.0f - *mirror);
         p = at.beyond;
         way -= t;
@@ -76,7 +76,7 @@ static vec3 left(const finding *f, vec3 p, const arrival *a, float *mirror) {
 }
 
 /* One of the samples that a path has of a source is kept, in proportion to weights, and has all their weight. */
-static void keep(finding *f, uint32_t path, uint32_t slot, const guide_sample *s, float chance) {
+static void keep(finding *f, uint32_t path, uint32_t slot, const guiding_tree_sample *s, float chance) {
     const size_t i = (size_t)slot * PATHS + path % PATHS;
     f->sums[i] += (double)s->weight;
     if ((double)chance * f->sums[i] < (double)s->weight)
@@ -102,7 +102,7 @@ static void join(finding *f, uint32_t path, uint32_t frame, const photon_surface
             continue;
         float mirror;
         const vec3 arrived = vec3_times(light, left(f, at->position, &a, &mirror));
-        guide_sample s = {.weight = arrived.x + arrived.y + arrived.z};
+        guiding_tree_sample s = {.weight = arrived.x + arrived.y + arrived.z};
         if (!(s.weight > 0.0f) || (seen && mirror < 0.0f))
             continue;
         const uint32_t first = photon_emission_numbers(&l);
@@ -127,7 +127,7 @@ static vec3 camera_ray(const finding *f, uint32_t path, uint32_t frame) {
 static void trace(void *user, uint32_t slot) {
     finding *f = user;
     const uint32_t path = f->round * PATHS + slot;
-    const guides_input *in = f->in;
+    const photon_guiding_input *in = f->in;
     const uint64_t effects = in->scene.effects;
     const uint32_t frames = in->frames < MOST_FRAMES ? in->frames : MOST_FRAMES,
                    frame = (uint32_t)((uint64_t)(pcg(path) % frames) * in->frames / frames);
@@ -141,13 +141,13 @@ static void trace(void *user, uint32_t slot) {
         const photon_surface s = photon_surface_at(&in->scene, o, d, t, triangle);
         const float u = throw(&random), v = throw(&random);
         if (VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) != VIT_MATTE) {
-            d = photons_shine_on(&s, d, t, u, &o, &power);
+            d = photons_emitted(&s, d, t, u, &o, &power);
             others++;
             continue;
         }
-        const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
-                                                                                     : (vec3){0.0f, 0.0f, 0.0f};
-        power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
+        const vec3 specular = effects & VIT_BIT(SPECULAR) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
+                                                                                           : (vec3){0.0f, 0.0f, 0.0f};
+        power = vec3_times(power, vec3_along(s.albedo, specular, 1.0f));
         if (!(power.x + power.y + power.z > 0.0f))
             return;
         if (matt > 0 || f->panes)
@@ -169,8 +169,8 @@ static bool has_panes(const photon_scene *s) {
 /* Adds a round's samples. False: out of memory. */
 static bool collect(finding *f) {
     for (uint32_t i = 0; i < f->sources; i++) {
-        const guide_sample *from = f->samples + (size_t)(i / f->groups) * PATHS;
-        guide_sample *to = realloc(f->found[i], (f->count[i] + PATHS / f->groups + 1u) * sizeof *to);
+        const guiding_tree_sample *from = f->samples + (size_t)(i / f->groups) * PATHS;
+        guiding_tree_sample *to = realloc(f->found[i], (f->count[i] + PATHS / f->groups + 1u) * sizeof *to);
         if (!to)
             return false;
         f->found[i] = to;
@@ -200,7 +200,7 @@ static bool trace_rounds(finding *f) {
 }
 
 /* Trees of the sources that stand still, and what each source is worth. */
-static bool settle(finding *f, guides *out) {
+static bool settle(finding *f, photon_guiding *out) {
     double all = 0;
     for (uint32_t i = 0; i < f->sources; i++) {
         const photons_light l = source(f, i, 0);
@@ -208,7 +208,7 @@ static bool settle(finding *f, guides *out) {
             out->worth[i] += (double)f->found[i][k].weight;
         all += out->worth[i];
         if (l.paths > 0 && (l.area || l.sky || f->in->tracks->still[i]) &&
-            !guide_build(f->found[i], f->count[i], photon_emission_numbers(&l) + 2, out->guide + i))
+            !guiding_tree_build(f->found[i], f->count[i], photon_emission_numbers(&l) + 2, out->guide + i))
             return false;
     }
     for (uint32_t i = 0; i < f->sources && all > 0; i++)
@@ -225,7 +225,7 @@ static void drop(finding *f) {
     free(f->sums);
 }
 
-vit_status guides_find(const guides_input *in, guides *out, vit_text *why) {
+vit_status photon_guiding_find(const photon_guiding_input *in, photon_guiding *out, vit_text *why) {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     finding f = {.in = in, .sources = in->tracks->light_count + 2};
     f.groups = (f.sources + MOST_SAMPLES - 1) / MOST_SAMPLES;
@@ -237,10 +237,10 @@ vit_status guides_find(const guides_input *in, guides *out, vit_text *why) {
     f.count = calloc(f.sources, sizeof *f.count);
     for (uint32_t i = 0; i < in->frames; i++)
         f.around = vec3_along(f.around, vec3_load(in->tracks->cameras[i].eye), 1.0f / (float)in->frames);
-    *out = (guides){.around = f.around,
-                    .guide = calloc(f.sources, sizeof *out->guide),
-                    .worth = calloc(f.sources, sizeof *out->worth),
-                    .count = f.sources};
+    *out = (photon_guiding){.around = f.around,
+                            .guide = calloc(f.sources, sizeof *out->guide),
+                            .worth = calloc(f.sources, sizeof *out->worth),
+                            .count = f.sources};
     snprintf(why->text, sizeof why->text, "guides of photons: out of memory, or Embree fails");
     bool fine = f.samples && f.sums && f.found && f.count && out->guide && out->worth &&
                 photon_rays_open(&in->scene,
@@ -254,18 +254,18 @@ vit_status guides_find(const guides_input *in, guides *out, vit_text *why) {
     }
     drop(&f);
     if (!fine)
-        guides_free(out);
+        photon_guiding_free(out);
     return fine ? VIT_OK : VIT_FAILED;
 }
 
-void guides_free(guides *g) {
+void photon_guiding_free(photon_guiding *g) {
     for (uint32_t i = 0; i < g->count && g->guide; i++)
-        guide_free(g->guide + i);
+        guiding_tree_free(g->guide + i);
     free(g->guide);
     free(g->worth);
-    *g = (guides){0};
+    *g = (photon_guiding){0};
 }
 
-const guide *guides_of(const guides *g, uint32_t source) {
+const guiding_tree *photon_guiding_of(const photon_guiding *g, uint32_t source) {
     return g && g->guide[source].nodes ? g->guide + source : NULL;
 }

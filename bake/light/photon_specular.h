@@ -1,4 +1,4 @@
-/* photon_specular.h: kernels/shine.clh as plain C: where light goes at mirrors and glass, the same operations in the same
+/* photon_specular.h: kernels/specular.clh as plain C: where light goes at mirrors and glass, the same operations in the same
  * order.
  */
 #ifndef VIT_BAKE_PHOTON_SHINE_H
@@ -8,19 +8,19 @@
 #include <stdbool.h>
 
 /* d mirrored at n, both unit; the ray stays on the side of the unit face normal. */
-static inline vec3 shine_mirrored(vec3 d, vec3 n, vec3 face) {
+static inline vec3 specular_mirrored(vec3 d, vec3 n, vec3 face) {
     const vec3 r = vec3_along(d, n, -2.0f * vec3_dot(d, n)), flat = vec3_along(d, face, -2.0f * vec3_dot(d, face));
     return vec3_unit(vec3_dot(r, face) > 0.0f ? r : flat);
 }
 
-typedef struct shine_paths {
+typedef struct specular_paths {
     vec3 mirrored, refracted; /* unit directions; refracted: only where `mirror` is less than 1 */
     float mirror;             /* Fresnel: the part that is mirrored; 1: total internal reflection */
-} shine_paths;
+} specular_paths;
 
 /* Unit direction d meets glass with the unit normals n (shading) and face, both on d's side; back: it comes from the inside. */
-static inline shine_paths shine_at_glass(vec3 d, vec3 n, vec3 face, bool back, bool thin, float ior) {
-    shine_paths r = {.mirrored = shine_mirrored(d, n, face)};
+static inline specular_paths specular_at_glass(vec3 d, vec3 n, vec3 face, bool back, bool thin, float ior) {
+    specular_paths r = {.mirrored = specular_mirrored(d, n, face)};
     const float eta = back && !thin ? ior : 1.0f / ior;
     const float ci = float_min(float_max(-vec3_dot(d, n), 0.0f), 1.0f), st2 = eta * eta * (1.0f - ci * ci);
     const float ct = sqrtf(float_max(1.0f - st2, 0.0f));
@@ -34,7 +34,7 @@ static inline shine_paths shine_at_glass(vec3 d, vec3 n, vec3 face, bool back, b
 }
 
 /* exp(-absorption * distance), a channel. */
-static inline vec3 shine_absorbed(vec3 absorption, float distance) {
+static inline vec3 specular_absorbed(vec3 absorption, float distance) {
     return (vec3){power_of_two(float_max(absorption.x * distance * -1.44269504f, -126.0f)),
                   power_of_two(float_max(absorption.y * distance * -1.44269504f, -126.0f)),
                   power_of_two(float_max(absorption.z * distance * -1.44269504f, -126.0f))};

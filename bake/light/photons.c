@@ -56,16 +56,16 @@ static bool has_power(vec3 p) {
     return p.x + p.y + p.z > 0.0f;
 }
 
-vec3 photons_shine_on(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
+vec3 photons_emitted(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
     const vit_material *m = s->material;
     vec3 tint = vec3_load(m->specular);
-    vec3 on = shine_mirrored(d, s->normal, s->face);
+    vec3 on = specular_mirrored(d, s->normal, s->face);
     *o = s->position;
     if (m->kind != VIT_MIRROR) {
         const bool thin = m->kind == VIT_THIN_GLASS;
-        const shine_paths p = shine_at_glass(d, s->normal, s->face, s->back, thin, m->ior);
+        const specular_paths p = specular_at_glass(d, s->normal, s->face, s->back, thin, m->ior);
         if (s->back && !thin)
-            *power = vec3_times(*power, shine_absorbed(vec3_load(m->absorption), t));
+            *power = vec3_times(*power, specular_absorbed(vec3_load(m->absorption), t));
         if (u >= p.mirror) {
             on = p.refracted;
             *o = s->beyond;
@@ -111,15 +111,15 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             v = start.bounce[1];
         }
         if (matt) {
-            const vec3 gloss = effects & VIT_BIT(GLOSS) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
-                                                                                         : (vec3){0.0f, 0.0f, 0.0f};
-            power = vec3_times(power, vec3_along(s.albedo, gloss, 1.0f));
+            const vec3 specular = effects & VIT_BIT(SPECULAR) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
+                                                                                               : (vec3){0.0f, 0.0f, 0.0f};
+            power = vec3_times(power, vec3_along(s.albedo, specular, 1.0f));
             d = photon_cosine_lobe(s.face, u, v);
             o = s.position;
             from = s.face;
         } else {
             from = (vec3){0.0f, 0.0f, 0.0f};
-            d = photons_shine_on(&s, d, t, u, &o, &power);
+            d = photons_emitted(&s, d, t, u, &o, &power);
         }
         if (!has_power(power))
             return;

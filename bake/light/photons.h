@@ -13,12 +13,12 @@
 
 /* A light, or all area lights together, or the sky. */
 typedef struct photons_light {
-    vit_light light;      /* its record, the same in all frames; path_first and path_count do not count */
-    uint32_t paths;       /* 1..PHOTONS_MAX_PATHS; 0: none */
-    const emitters *area; /* not NULL: the area lights, and `light` does not count */
-    const sky *sky; /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere round the
-                       scene */
-    const struct guide *guide; /* where its paths start and how they first reflect (guiding_tree.h); NULL: evenly */
+    vit_light light;         /* its record, the same in all frames; path_first and path_count do not count */
+    uint32_t paths;          /* 1..PHOTONS_MAX_PATHS; 0: none */
+    const area_lights *area; /* not NULL: the area lights, and `light` does not count */
+    const environment *sky;  /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere
+                        round the  scene */
+    const struct guiding_tree *guide; /* where its paths start and how they first reflect (guiding_tree.h); NULL: evenly */
     vec3 around; /* of the sky, guided: the place that positions across its directions are counted from, so that a window is in
                     one place from all of them */
 } photons_light;
@@ -40,7 +40,7 @@ typedef struct photons_input {
     const cells *cells;                /* not NULL: a photon's zone is the index of the cell that it lands in; otherwise 0 */
     const photons_light *lights;       /* still lights */
     uint32_t light_count;
-    uint32_t *met;                 /* a word a material, set to 1 where a path meets it; may be NULL */
+    uint32_t *met;                 /* a word per material, set to 1 where a path meets it; may be NULL */
     photons_progress_fn *progress; /* may be NULL */
     void *user;
 } photons_input;
@@ -53,6 +53,6 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
 
 /* Where a path goes at a mirror or glass, u a random number: Fresnel's part of the paths is mirrored. *power and *o follow; t:
  * its way so far, m. */
-vec3 photons_shine_on(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
+vec3 photons_emitted(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
 
 #endif

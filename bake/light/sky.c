@@ -41,12 +41,12 @@ static vec3 from_square(double u, double v, double *density) {
     return (vec3){(float)(x / l), (float)(y / l), (float)(z / l)};
 }
 
-static vit_sky_texel *texel(const sky *s, int x, int y) {
+static vit_sky_texel *texel(const environment *s, int x, int y) {
     return s->texels + (size_t)(y + 1) * (s->size + 2) + (size_t)(x + 1);
 }
 
 /* Beyond an edge the picture goes on at the same edge, from the other end. */
-static void fill_gutter(sky *s) {
+static void fill_gutter(environment *s) {
     const int n = (int)s->size, last = n - 1;
     for (int i = 0; i < n; i++) {
         *texel(s, -1, i) = *texel(s, 0, last - i);
@@ -60,7 +60,7 @@ static void fill_gutter(sky *s) {
     *texel(s, n, -1) = *texel(s, 0, last);
 }
 
-vec3 sky_radiance(const sky *s, vec3 d) {
+vec3 sky_radiance(const environment *s, vec3 d) {
     if (s->size == 0)
         return vec3_load(s->background);
     float x, y;
@@ -81,7 +81,7 @@ vec3 sky_radiance(const sky *s, vec3 d) {
 
 /* Power that a texel's interpolated picture sends, W/m2 a channel and, returned, of all: each quarter's mean is what its middle
  * has. */
-static double texel_power(const sky *s, int x, int y, double power[3]) {
+static double texel_power(const environment *s, int x, int y, double power[3]) {
     const double width = 2.0 / s->size;
     memset(power, 0, 3 * sizeof *power);
     for (int q = 0; q < 4; q++) {
@@ -99,11 +99,11 @@ static double texel_power(const sky *s, int x, int y, double power[3]) {
 }
 
 /* Level l of the pyramid: 4^l squares, row after row, behind all coarser levels. */
-static double *level_of(const sky *s, uint32_t size) {
+static double *level_of(const environment *s, uint32_t size) {
     return s->weight + ((size_t)size * size - 1) / 3;
 }
 
-static bool weigh(sky *s) {
+static bool weigh(environment *s) {
     s->weight = malloc(((size_t)4 * s->size * s->size - 1) / 3 * sizeof *s->weight);
     if (!s->weight)
         return false;
@@ -135,7 +135,7 @@ static bool part(double first, double second, double *x) {
     return far;
 }
 
-sky_ray sky_choose(const sky *s, double x, double y) {
+sky_ray sky_choose(const environment *s, double x, double y) {
     if (s->size == 0) {
         const double z = 1.0 - 2.0 * y, r = sqrt(fmax(1.0 - z * z, 0.0));
         const vec3 d = {(float)(r * strict_cos(2.0 * PI * x)), (float)z, (float)(r * strict_sin(2.0 * PI * x))};
@@ -157,15 +157,15 @@ sky_ray sky_choose(const sky *s, double x, double y) {
                      {(float)(power[0] / chosen), (float)(power[1] / chosen), (float)(power[2] / chosen)}};
 }
 
-void sky_sets(const sky *s, uint32_t samples, vit_emitter *out) {
+void sky_sets(const environment *s, uint32_t samples, vit_light_sample *out) {
     const float share = 1.0f / (float)samples;
     for (uint32_t set = 0; set < VIT_PATTERNS; set++)
         for (uint32_t i = 0; i < samples; i++) {
             double x, y;
             sobol_point(samples, set, i, &x, &y);
             const sky_ray r = sky_choose(s, x, y);
-            *out++ = (vit_emitter){.position = {r.direction.x, r.direction.y, r.direction.z},
-                                   .power = {r.power.x * share, r.power.y * share, r.power.z * share}};
+            *out++ = (vit_light_sample){.position = {r.direction.x, r.direction.y, r.direction.z},
+                                        .power = {r.power.x * share, r.power.y * share, r.power.z * share}};
         }
 }
 
@@ -213,11 +213,11 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
         }
 }
 
-vit_status sky_from_texels(const float *rgb, int width, int height, double rotate, sky *out, vit_text *why) {
+vit_status sky_from_texels(const float *rgb, int width, int height, double rotate, environment *out, vit_text *why) {
     uint32_t size = LEAST_SIZE;
     while (size < MOST_SIZE && 2 * size <= (uint32_t)width / 2 + (uint32_t)width / 4)
         size *= 2; /* texels as wide as the picture's at the horizon, or up to twice as fine */
-    *out = (sky){.size = size, .texels = calloc((size_t)(size + 2) * (size + 2), sizeof *out->texels)};
+    *out = (environment){.size = size, .texels = calloc((size_t)(size + 2) * (size + 2), sizeof *out->texels)};
     splat *sums = calloc((size_t)size * size, sizeof *sums);
     double power[3] = {0, 0, 0};
     bool fine = out->texels && sums;
@@ -283,7 +283,7 @@ static const char *decode(const uint8_t *bytes, int size, double scale, int *wid
     return *rgb ? NULL : "is broken";
 }
 
-vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit_text *why) {
+vit_status sky_load(const char *file, double scale, double rotate, environment *out, vit_text *why) {
     int size, width = 0, height = 0;
     float *rgb = NULL;
     uint8_t *bytes = image_file_read(file, &size);
@@ -291,7 +291,7 @@ vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit
                         : file_trouble(file) ? file_trouble(file)
                                              : "is empty or cannot be read";
     vit_status status = VIT_BAD_INPUT;
-    *out = (sky){0};
+    *out = (environment){0};
     if (wrong)
         snprintf(why->text, sizeof why->text, "sky: '%.300s' %s", file, wrong);
     else
@@ -301,16 +301,16 @@ vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit
     return status;
 }
 
-void sky_constant(const double radiance[3], sky *out) {
-    *out = (sky){0};
+void sky_constant(const double radiance[3], environment *out) {
+    *out = (environment){0};
     for (int k = 0; k < 3; k++) {
         out->background[k] = (float)radiance[k];
         out->irradiance[k] = 4.0 * PI * radiance[k];
     }
 }
 
-void sky_free(sky *s) {
+void sky_free(environment *s) {
     free(s->texels);
     free(s->weight);
-    *s = (sky){0};
+    *s = (environment){0};
 }

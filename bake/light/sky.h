@@ -5,28 +5,28 @@
 #include "common/kernel_math.h"
 #include "vitrine_pack.h"
 
-typedef struct sky {
-    uint32_t size;         /* texels a side, a power of two; 0: no picture */
+typedef struct environment {
+    uint32_t size;         /* texels per side, a power of two; 0: no picture */
     vit_sky_texel *texels; /* (size + 2)^2, section SKYT */
     float background[3];   /* radiance without a picture, W/(m2 sr) */
     double irradiance[3];  /* of all directions together on what faces them: the integral of radiance, W/m2 */
     double *
         weight; /* with a picture: quarters of quarters of the square, their power summed over channels: 1, 4, 16, ... size^2 */
-} sky;
+} environment;
 
 /* From a picture of the whole sky, twice as wide as high: u = 0.5 + atan2(x, -z) / (2 pi) to the right, v = acos(y) / pi from
  * the top, in front of the scene's -z in the middle. PNG and JPEG are sRGB, .hdr (Radiance) is linear. scale: W/(m2 sr) of a
  * value of 1; rotate: degrees about y, as meshes are. VIT_BAD_INPUT: the text names file and cause; VIT_FAILED: out of memory.
  */
-vit_status sky_load(const char *file, double scale, double rotate, sky *out, vit_text *why);
+vit_status sky_load(const char *file, double scale, double rotate, environment *out, vit_text *why);
 /* From `width` x `height` linear texels, W/(m2 sr), three floats each. */
-vit_status sky_from_texels(const float *rgb, int width, int height, double rotate, sky *out, vit_text *why);
+vit_status sky_from_texels(const float *rgb, int width, int height, double rotate, environment *out, vit_text *why);
 /* The same in all directions. */
-void sky_constant(const double radiance[3], sky *out);
-void sky_free(sky *s);
+void sky_constant(const double radiance[3], environment *out);
+void sky_free(environment *s);
 
 /* Radiance in unit direction d, W/(m2 sr); sky_radiance() of kernels/samples.cl. */
-vec3 sky_radiance(const sky *s, vec3 d);
+vec3 sky_radiance(const environment *s, vec3 d);
 
 typedef struct sky_ray {
     vec3 direction; /* to the sky, unit */
@@ -34,12 +34,12 @@ typedef struct sky_ray {
 } sky_ray;
 
 /* The direction for 0 < x, y < 1: even over the unit square is dense in proportion to radiance. Not for a black sky. */
-sky_ray sky_choose(const sky *s, double x, double y);
+sky_ray sky_choose(const environment *s, double x, double y);
 
 /* Middle and radius, m, of a sphere round a box: photons of the sky leave the disc that it shows. */
 void sky_sphere(const double lo[3], const double hi[3], float center[3], float *radius);
 
 /* VIT_PATTERNS sets of `samples` directions, section EMIT's second part. */
-void sky_sets(const sky *s, uint32_t samples, vit_emitter *out);
+void sky_sets(const environment *s, uint32_t samples, vit_light_sample *out);
 
 #endif

@@ -29,12 +29,12 @@ static vit_status out_of_memory(vit_text *why) {
     return VIT_FAILED;
 }
 
-static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool reach,
+static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool dark_sides,
                             vit_text *why) {
     vit_requirements need;
     vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
-    info.record_reach = reach;
-    info.count_work = reach && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
+    info.record_reach = dark_sides;
+    info.count_work = dark_sides && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
     memset(r, 0, sizeof *r);
     vit_status status = pack_assemble(sections, &r->pack, &info.pack_size, why);
     if (status != VIT_OK)

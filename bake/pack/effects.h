@@ -16,7 +16,7 @@ typedef struct effects_reached {
     uint32_t frames;      /* number of these */
 } effects_reached;
 
-/* A record a material, then the triangles with interpolated normals and the sky (VIT_REACHED_MORE), then texels of cut-out
+/* A record per material, then the triangles with interpolated normals and the sky (VIT_REACHED_MORE), then texels of cut-out
  * materials that rays were tested against. */
 #define EFFECTS_RECORDS(materials) ((materials) + VIT_REACHED_MORE + 1)
 

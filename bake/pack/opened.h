@@ -7,7 +7,7 @@
 typedef struct opened {
     void *arena;
     uint8_t *frame; /* tightly packed, on a page: rendered in place where the device can */
-    size_t stride;  /* bytes a row */
+    size_t stride;  /* bytes per row */
     vit_requirements need;
     vit *v;
 } opened;

@@ -1,5 +1,6 @@
-/* pipeline_load, once a scene: import -> tracks -> lamps' planes -> glass gap -> BVH -> geometry -> reach -> atlas -> sky.
- * pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> guides -> emitters
+/* pipeline_load, once a scene: import -> tracks -> area lights' planes -> glass inset -> BVH -> geometry -> dark sides -> atlas
+ * -> sky. pipeline_pack, once a setting: tracks -> shape (its own where the setting asks for fewer bits) -> plan -> photon
+ * guiding -> area lights
  * -> photons; with radius "auto" a count of photons that a frame stores, the radius and, as each photon's own depends on it,
  * photons again; then zones and areas and, since a photon has the zone of the cell where it lands, photons again; then bounds
  * (the whole path is played) -> effects that rays met -> pack. */
@@ -17,7 +18,7 @@
 #include <string.h>
 
 #define GUIDED_BY                                                                                                              \
-    (VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(GLOSS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
+    (VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SPECULAR) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))
 #define COARSE 0x1p-16 /* of the scene's size: coarser floats in its files are worth a warning */
 
 static vit_status out_of_memory(vit_text *why) {
@@ -64,24 +65,24 @@ vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
 }
 
 static vit_status draw_glass_in(model *m, vit_text *why) {
-    return glass_gap(m, geometry_ray_offset(m)) ? VIT_OK : out_of_memory(why);
+    return glass_inset(m, geometry_ray_offset(m)) ? VIT_OK : out_of_memory(why);
 }
 
-/* Lamps in the very plane of a ceiling come out of it. */
-static vit_status part_lamps(pipeline *p, vit_text *why) {
+/* Area lights in the very plane of a ceiling come out of it. */
+static vit_status part_area_lights(pipeline *p, vit_text *why) {
     const float ray_offset = geometry_ray_offset(&p->model);
     uint32_t moved;
-    if (!lamp_plane(&p->model, p->tracks.cameras, (uint32_t)p->scene.frames, ray_offset, &moved))
+    if (!area_light_plane(&p->model, p->tracks.cameras, (uint32_t)p->scene.frames, ray_offset, &moved))
         return out_of_memory(why);
     if (moved > 0)
         progress_line(p->progress, false,
                       "%u triangles that emit lie in the plane of others: moved by %.2g m to the camera's side", moved,
-                      LAMP_PLANE * (double)ray_offset);
+                      AREA_LIGHT_PLANE * (double)ray_offset);
     return VIT_OK;
 }
 
 /* BVH, triangles and dark sides of the model. */
-static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry *g, reach *r, vit_text *why) {
+static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry *g, dark_sides *r, vit_text *why) {
     progress_stage(p->progress, "BVH");
     vit_status status = bvh_build(m, p->threads, b, why);
     if (status == VIT_OK)
@@ -89,8 +90,8 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
     if (status != VIT_OK)
         return status;
     progress_stage(p->progress, "sides that light can reach");
-    return reach_dark_sides(m, &p->tracks, (uint32_t)p->scene.frames, p->scene.sky.light, g, p->threads, step, p->progress, r,
-                            why);
+    return dark_sides_find(m, &p->tracks, (uint32_t)p->scene.frames, p->scene.sky.light, g, p->threads, step, p->progress, r,
+                           why);
 }
 
 /* What of MTL's highlights is not what the file's letter says. */
@@ -148,11 +149,11 @@ vit_status pipeline_load(pipeline *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     light_units_say(&p->scene, &p->model, p->progress);
-    status = part_lamps(p, why);
+    status = part_area_lights(p, why);
     if (status == VIT_OK)
         status = draw_glass_in(&p->model, why);
     if (status == VIT_OK)
-        status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->reach, why);
+        status = make_shape(p, &p->model, &p->bvh, &p->geometry, &p->dark_sides, why);
     p->kept = calloc(1, sizeof *p->kept);
     if (status == VIT_OK && !p->kept)
         status = out_of_memory(why);
@@ -169,7 +170,7 @@ void pipeline_free(pipeline *p) {
     if (p->kept)
         zones_kept_free(p->kept);
     free(p->kept);
-    guides_free(&p->guided.guides);
+    photon_guiding_free(&p->guided.guiding);
     sky_free(&p->sky);
     atlas_free(&p->atlas);
     geometry_free(&p->geometry);
@@ -188,7 +189,7 @@ static vit_status choose_shape(const pipeline *p, const scene_quality *q, pipeli
     out->model = &p->model;
     out->bvh = &p->bvh;
     out->geometry = &p->geometry;
-    out->reach = &p->reach;
+    out->dark_sides = &p->dark_sides;
     if (q->vertex_bits != 16 && q->normal_bits != 8)
         return VIT_OK;
     pipeline_shape *c = &out->coarse;
@@ -200,8 +201,8 @@ static vit_status choose_shape(const pipeline *p, const scene_quality *q, pipeli
     out->model = &c->model;
     out->bvh = &c->bvh;
     out->geometry = &c->geometry;
-    out->reach = &c->reach;
-    return make_shape(p, &c->model, &c->bvh, &c->geometry, &c->reach, why);
+    out->dark_sides = &c->dark_sides;
+    return make_shape(p, &c->model, &c->bvh, &c->geometry, &c->dark_sides, why);
 }
 
 /* The sky as a source of photons. */
@@ -211,13 +212,13 @@ static photons_light sky_source(const pipeline *p, const pipeline_packed *out) {
         .light = {.position = {l->sky_center[0], l->sky_center[1], l->sky_center[2]}, .spot_scale = l->sky_radius},
         .paths = l->sky_paths,
         .sky = &p->sky,
-        .guide = guides_of(out->guides, out->tracks.light_count + 1),
-        .around = out->guides ? out->guides->around : (vec3){0.0f, 0.0f, 0.0f}};
+        .guide = photon_guiding_of(out->guiding, out->tracks.light_count + 1),
+        .around = out->guiding ? out->guiding->around : (vec3){0.0f, 0.0f, 0.0f}};
 }
 
 /* Density of guided paths over that of even ones, where they are worth something, on average: of the light's own and of its
  * share of all paths. */
-static double guides_gain(const guides *g, const pipeline_packed *out) {
+static double photon_guiding_gain(const photon_guiding *g, const pipeline_packed *out) {
     const uint32_t lights = out->tracks.light_count;
     double all = 0, gain = 0;
     for (int pass = 0; pass < 2; pass++)
@@ -236,10 +237,10 @@ static double guides_gain(const guides *g, const pipeline_packed *out) {
  * evenly. */
 static vit_status guide_photons(pipeline *p, const scene *s, pipeline_packed *out, vit_text *why) {
     const vit_scene *c = &out->plan.scene;
-    pipeline_guides *kept = &p->guided;
+    pipeline_guiding *kept = &p->guided;
     if (!s->quality.guiding || !(c->effects & VIT_BIT(PHOTONS)))
         return VIT_OK;
-    if (kept->guides.count == 0 || kept->width != c->width || kept->height != c->height || kept->bounces != c->bounces ||
+    if (kept->guiding.count == 0 || kept->width != c->width || kept->height != c->height || kept->bounces != c->bounces ||
         kept->effects != (c->effects & GUIDED_BY)) {
         bool *gives = calloc(c->lights + 1u, sizeof *gives);
         if (!gives)
@@ -247,34 +248,34 @@ static vit_status guide_photons(pipeline *p, const scene *s, pipeline_packed *ou
         for (uint32_t i = 0; i < c->lights; i++)
             gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
         const photons_light from_sky = sky_source(p, out);
-        const guides_input in = {.scene = {.triangles = p->geometry.triangles,
-                                           .attributes = p->geometry.attributes,
-                                           .triangle_count = p->model.triangles,
-                                           .materials = out->plan.materials,
-                                           .atlas = &p->atlas,
-                                           .ray_offset = p->geometry.ray_offset,
-                                           .box_pad = p->bvh.box_pad,
-                                           .effects = c->effects},
-                                 .tracks = &out->tracks,
-                                 .frames = c->frames,
-                                 .width = c->width,
-                                 .height = c->height,
-                                 .bounces = c->bounces,
-                                 .gives_photons = gives,
-                                 .area = out->plan.area_paths > 0 ? &out->plan.area : NULL,
-                                 .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
-                                 .threads = p->threads};
+        const photon_guiding_input in = {.scene = {.triangles = p->geometry.triangles,
+                                                   .attributes = p->geometry.attributes,
+                                                   .triangle_count = p->model.triangles,
+                                                   .materials = out->plan.materials,
+                                                   .atlas = &p->atlas,
+                                                   .ray_offset = p->geometry.ray_offset,
+                                                   .box_pad = p->bvh.box_pad,
+                                                   .effects = c->effects},
+                                         .tracks = &out->tracks,
+                                         .frames = c->frames,
+                                         .width = c->width,
+                                         .height = c->height,
+                                         .bounces = c->bounces,
+                                         .gives_photons = gives,
+                                         .area = out->plan.area_paths > 0 ? &out->plan.area : NULL,
+                                         .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
+                                         .threads = p->threads};
         progress_stage(p->progress, "guides of photons");
-        guides_free(&kept->guides);
-        const vit_status status = guides_find(&in, &kept->guides, why);
+        photon_guiding_free(&kept->guiding);
+        const vit_status status = photon_guiding_find(&in, &kept->guiding, why);
         free(gives);
         if (status != VIT_OK)
             return status;
-        *kept = (pipeline_guides){kept->guides, c->width, c->height, c->bounces, c->effects & GUIDED_BY};
+        *kept = (pipeline_guiding){kept->guiding, c->width, c->height, c->bounces, c->effects & GUIDED_BY};
     }
-    out->guides = &kept->guides;
-    out->guided_gain = guides_gain(&kept->guides, out);
-    return plan_share(s, &out->tracks, out->reach, &p->sky, kept->guides.worth, &out->plan, why);
+    out->guiding = &kept->guiding;
+    out->guided_gain = photon_guiding_gain(&kept->guiding, out);
+    return plan_share(s, &out->tracks, out->dark_sides, &p->sky, kept->guiding.worth, &out->plan, why);
 }
 
 static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_text *why) {
@@ -290,10 +291,11 @@ static vit_status trace_photons(const pipeline *p, pipeline_packed *out, vit_tex
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
             lights[count++] = (photons_light){
-                .light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = guides_of(out->guides, i)};
+                .light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = photon_guiding_of(out->guiding, i)};
     if (out->plan.area_paths > 0)
-        lights[count++] = (photons_light){
-            .paths = out->plan.area_paths, .area = &out->plan.area, .guide = guides_of(out->guides, out->tracks.light_count)};
+        lights[count++] = (photons_light){.paths = out->plan.area_paths,
+                                          .area = &out->plan.area,
+                                          .guide = photon_guiding_of(out->guiding, out->tracks.light_count)};
     if (out->plan.sky_paths > 0)
         lights[count++] = sky_source(p, out);
     if (count > 0) {
@@ -373,7 +375,7 @@ static void point_sections(const pipeline *p, pipeline_packed *out) {
                                              [VIT_SECTION_ATLS] = p->atlas.texels,
                                              [VIT_SECTION_SIDE] = out->cells.sides,
                                              [VIT_SECTION_CELL] = out->cells.cells,
-                                             [VIT_SECTION_EMIT] = out->emitters,
+                                             [VIT_SECTION_EMIT] = out->area_lights,
                                              [VIT_SECTION_SKYT] = p->sky.texels,
                                              [VIT_SECTION_PHOT] = out->photons,
                                              [VIT_SECTION_GOLD] = out->gold}};
@@ -396,7 +398,7 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
                             .gives_photons = gives,
                             .area_lights = out->plan.area_paths > 0 ? &out->plan.area : NULL,
                             .sky = out->plan.sky_paths > 0 ? &from_sky : NULL,
-                            .guides = out->guides,
+                            .guiding = out->guiding,
                             .scene = &out->plan.scene,
                             .zones = c->quality.zones,
                             .by_light = c->quality.light_zones,
@@ -413,17 +415,17 @@ static vit_status bake_zones(const pipeline *p, const pipeline_choice *c, pipeli
 }
 
 /* The sets of points on area lights and of directions to the sky. */
-static vit_status place_emitters(const pipeline *p, pipeline_packed *out, vit_text *why) {
+static vit_status place_area_lights(const pipeline *p, pipeline_packed *out, vit_text *why) {
     const vit_scene *s = &out->plan.scene;
-    out->emitters = malloc(((size_t)s->area_samples + s->sky_samples + 1) * VIT_PATTERNS * sizeof *out->emitters);
-    if (!out->emitters)
+    out->area_lights = malloc(((size_t)s->area_samples + s->sky_samples + 1) * VIT_PATTERNS * sizeof *out->area_lights);
+    if (!out->area_lights)
         return out_of_memory(why);
     if (s->area_samples > 0)
-        emitters_near(&out->plan.area, s->area_samples, out->plan.materials);
+        area_lights_near(&out->plan.area, s->area_samples, out->plan.materials);
     const vit_status status =
-        s->area_samples > 0 ? emitters_sets(&out->plan.area, s->area_samples, out->emitters, why) : VIT_OK;
+        s->area_samples > 0 ? area_lights_sets(&out->plan.area, s->area_samples, out->area_lights, why) : VIT_OK;
     if (s->sky_samples > 0)
-        sky_sets(&p->sky, s->sky_samples, out->emitters + (size_t)VIT_PATTERNS * s->area_samples);
+        sky_sets(&p->sky, s->sky_samples, out->area_lights + (size_t)VIT_PATTERNS * s->area_samples);
     return status;
 }
 
@@ -475,12 +477,12 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
     if (status == VIT_OK)
         status = choose_shape(p, &choice->quality, out, why);
     if (status == VIT_OK)
-        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->reach, &p->sky, p->threads,
-                           &out->plan, why);
+        status = plan_make(&s, out->model, &out->tracks, &p->atlas, out->bvh, out->geometry, out->dark_sides, &p->sky,
+                           p->threads, &out->plan, why);
     if (status == VIT_OK)
         status = guide_photons(p, &s, out, why);
     if (status == VIT_OK)
-        status = place_emitters(p, out, why);
+        status = place_area_lights(p, out, why);
     if (status == VIT_OK)
         status = trace_photons(p, out, why);
     if (status == VIT_OK)
@@ -496,7 +498,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->gold);
     free(packed->photons);
     free(packed->met);
-    free(packed->emitters);
+    free(packed->area_lights);
     cells_free(&packed->cells);
     plan_free(&packed->plan);
     geometry_free(&packed->coarse.geometry);

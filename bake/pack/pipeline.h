@@ -16,11 +16,11 @@
 #include "zones/kept.h"
 
 /* Guides, and what they depend on besides the scene. */
-typedef struct pipeline_guides {
-    guides guides;
+typedef struct pipeline_guiding {
+    photon_guiding guiding;
     uint32_t width, height, bounces;
     uint64_t effects;
-} pipeline_guides;
+} pipeline_guiding;
 
 /* Zero, then set `scene` (pipeline_read) and the fields up to `progress`. */
 typedef struct pipeline {
@@ -35,11 +35,11 @@ typedef struct pipeline {
     tracks tracks; /* at the scene's own size */
     bvh bvh;
     geometry geometry;
-    reach reach;
+    dark_sides dark_sides;
     atlas atlas;
-    sky sky;
+    environment sky;
     zones_kept *kept;
-    pipeline_guides guided; /* of the last pack that guides photons */
+    pipeline_guiding guided; /* of the last pack that guides photons */
 } pipeline;
 
 typedef struct pipeline_choice {
@@ -54,7 +54,7 @@ typedef struct pipeline_shape {
     model model;
     bvh bvh;
     geometry geometry;
-    reach reach;
+    dark_sides dark_sides;
 } pipeline_shape;
 
 /* A pack and what it was made of. */
@@ -63,16 +63,16 @@ typedef struct pipeline_packed {
     const model *model;    /* the shape that was packed: the pipeline's, or `coarse` */
     const bvh *bvh;
     const geometry *geometry;
-    const reach *reach;
+    const dark_sides *dark_sides;
     plan plan;
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
-    const guides *guides;  /* the pipeline's; NULL: photons are not guided */
-    double guided_gain;    /* how many even paths a guided one stands for, where paths are worth something */
-    vit_emitter *emitters; /* section EMIT */
+    const photon_guiding *guiding; /* the pipeline's; NULL: photons are not guided */
+    double guided_gain;            /* how many even paths a guided one stands for, where paths are worth something */
+    vit_light_sample *area_lights; /* section EMIT */
     vit_photon *photons;
-    uint32_t *met; /* a word a material: 1 where baked photons met it */
+    uint32_t *met; /* a word per material: 1 where baked photons met it */
     vit_gold *gold;
     pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */
     void *bytes;            /* the pack */

@@ -46,10 +46,10 @@ static uint32_t share(const scene *s, double power, double total, const double *
 }
 
 /* Nobody gets paths where no surface could store a photon. */
-static vit_status share_paths(const scene *s, tracks *t, const sky *round, const reach *r, const double *worth, plan *p,
-                              vit_text *why) {
+static vit_status share_paths(const scene *s, tracks *t, const environment *sky, const dark_sides *r, const double *worth,
+                              plan *p, vit_text *why) {
     const double area = sum_of(p->area.flux) / TWO_PI;
-    const double above = s->sky.light ? 0.5 * sum_of(round->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
+    const double above = s->sky.light ? 0.5 * sum_of(sky->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
     uint32_t first = 0;
     for (uint32_t i = 0; i < t->light_count; i++)
@@ -148,12 +148,12 @@ static uint64_t effects_of_quality(const scene *s, const plan *p) {
     return e;
 }
 
-static uint64_t plan_emitters(const scene *s, const sky *round, plan *p) {
+static uint64_t plan_area_lights(const scene *s, const environment *sky, plan *p) {
     vit_scene *c = &p->scene;
-    c->sky_size = round->size;
+    c->sky_size = sky->size;
     if (p->area.count > 0)
         c->area_samples = (uint32_t)s->quality.light_samples;
-    if (s->sky.light && sum_of(round->irradiance) > 0)
+    if (s->sky.light && sum_of(sky->irradiance) > 0)
         c->sky_samples = (uint32_t)s->quality.sky_samples;
     return (c->sky_size ? VIT_BIT(SKY_IMAGE) : 0) | (c->area_samples ? VIT_BIT(AREA_LIGHTS) : 0) |
            (c->sky_samples ? VIT_BIT(SKY_LIGHT) : 0);
@@ -177,7 +177,7 @@ static void plan_grid(const model *m, vit_scene *c) {
 }
 
 /* Area that light can reach, m2 (a side counts for itself). */
-static double lit_area(const reach *r) {
+static double lit_area(const dark_sides *r) {
     double lit = r->area - r->dark_front - r->dark_back;
     return lit > 0 ? lit : r->area;
 }
@@ -190,8 +190,8 @@ static bool has_paths(const tracks *t, const plan *p) {
     return some;
 }
 
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r,
-                     const sky *round, unsigned threads, plan *out, vit_text *why) {
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g,
+                     const dark_sides *r, const environment *sky, unsigned threads, plan *out, vit_text *why) {
     memset(out, 0, sizeof *out);
     vit_scene *c = &out->scene;
     out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
@@ -236,9 +236,9 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
                               .ray_offset = g->ray_offset,
                               .box_pad = b->box_pad};
     sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius); /* 2. lights, and who gets how many photon paths */
-    vit_status status = emitters_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
+    vit_status status = area_lights_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
     if (status == VIT_OK)
-        status = share_paths(s, t, round, r, NULL, out, why);
+        status = share_paths(s, t, sky, r, NULL, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;
@@ -251,7 +251,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         c->chain = (uint32_t)s->quality.specular_depth;
         c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
     }
-    c->effects |= plan_emitters(s, round, out);
+    c->effects |= plan_area_lights(s, sky, out);
     if (s->quality.sample_bits == 16) {
         c->effects |= VIT_BIT(SMALL_SAMPLES);
         plan_grid(m, c);
@@ -276,9 +276,9 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     return VIT_OK;
 }
 
-vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p,
+vit_status plan_share(const scene *s, tracks *t, const dark_sides *r, const environment *sky, const double *worth, plan *p,
                       vit_text *why) {
-    const vit_status status = share_paths(s, t, round, r, worth, p, why);
+    const vit_status status = share_paths(s, t, sky, r, worth, p, why);
     p->area_paths = p->scene.effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = p->scene.effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     return status;
@@ -301,6 +301,6 @@ bool plan_leaves_area_out(const scene_quality *q) {
 void plan_free(plan *p) {
     free(p->materials);
     free(p->baked_paths);
-    emitters_free(&p->area);
+    area_lights_free(&p->area);
     memset(p, 0, sizeof *p);
 }

@@ -14,7 +14,7 @@ typedef struct plan {
     vit_scene scene;                 /* META but for slices and bounds, which bounds.c measures */
     vit_material *materials;         /* model.material_count records */
     uint32_t *baked_paths;           /* a light: paths to bake (still lights), 0 for the others */
-    emitters area;                   /* area lights: of these materials, of the geometry and atlas that the plan was made for */
+    area_lights area;                /* area lights: of these materials, of the geometry and atlas that the plan was made for */
     uint32_t area_paths, sky_paths;  /* of all area lights and of the sky, to bake: they are still */
     float sky_center[3], sky_radius; /* of a sphere round the scene, m */
     double lit_area;                 /* m2 of sides that light can reach */
@@ -24,11 +24,12 @@ typedef struct plan {
 
 /* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights, the area lights together
  * and the sky in proportion to their mean power, in multiples of 16 (a packet of paths has one light), at least 16 each. */
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g, const reach *r,
-                     const sky *round, unsigned threads, plan *out, vit_text *why);
+vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g,
+                     const dark_sides *r, const environment *sky, unsigned threads, plan *out, vit_text *why);
 void plan_free(plan *p);
 /* Shares the paths anew by what each of the tracks' lights, all area lights and the sky are worth (photon_guiding.h); sum 1. */
-vit_status plan_share(const scene *s, tracks *t, const reach *r, const sky *round, const double *worth, plan *p, vit_text *why);
+vit_status plan_share(const scene *s, tracks *t, const dark_sides *r, const environment *sky, const double *worth, plan *p,
+                      vit_text *why);
 
 /* What radius "auto" is, m, if a frame stores so many photons (> 0). Until that has been measured the plan assumes all slots.
  */

@@ -35,7 +35,7 @@ typedef struct tracing {
 
 /* Where a path starts, and the power that it has. photon_emission() of kernels/photons.cl, with other numbers. */
 static void emit(const vit_light *light, uint32_t paths, float u, float v, vec3 *o, vec3 *d, float power[3]) {
-    double share = 2 * SHINE_PI * (1 - (double)light->cos_outer) / paths; /* sr; of a direction's disc: m2 */
+    double share = 2 * REFERENCE_PI * (1 - (double)light->cos_outer) / paths; /* sr; of a direction's disc: m2 */
     const vec3 axis = light->kind == VIT_LIGHT_POINT ? (vec3){0, 1, 0} : vec3_load(light->direction);
     *o = vec3_load(light->position);
     if (light->kind == VIT_LIGHT_DIRECTIONAL) {
@@ -46,10 +46,10 @@ static void emit(const vit_light *light, uint32_t paths, float u, float v, vec3 
         const float r = sqrtf(u) * light->spot_scale;
         *o = vec3_along(vec3_along(*o, ax, r * c), ay, r * s);
         *d = axis;
-        share = SHINE_PI * (double)light->spot_scale * (double)light->spot_scale / paths;
+        share = REFERENCE_PI * (double)light->spot_scale * (double)light->spot_scale / paths;
     } else {
         const float c = 1.0f - u * (1.0f - light->cos_outer);
-        *d = shine_about(axis, c, sqrtf(float_max(1.0f - c * c, 0.0f)), v);
+        *d = specular_about(axis, c, sqrtf(float_max(1.0f - c * c, 0.0f)), v);
         share *= (double)light_cone(light, vec3_scale(*d, -1.0f));
     }
     for (int k = 0; k < 3; k++)
@@ -229,7 +229,7 @@ void caustics_free(caustics *c) {
     *c = (caustics){.count = 0};
 }
 
-static void add_photon(const caustics *c, const caustic_photon *q, const shine_place *place, int most, double limited[3],
+static void add_photon(const caustics *c, const caustic_photon *q, const path_vertex *place, int most, double limited[3],
                        double all[3]) {
     const vec3 to = vec3_sub(q->position, place->position);
     const float r2 = c->radius * c->radius;
@@ -238,15 +238,15 @@ static void add_photon(const caustics *c, const caustic_photon *q, const shine_p
         !(vec3_dot(q->direction, place->face) < 0.0f))
         return;
     if (place->glossy)
-        shine_reflectance(place, vec3_scale(q->direction, -1.0f), reflected);
+        specular_reflectance(place, vec3_scale(q->direction, -1.0f), reflected);
     for (int k = 0; k < 3; k++) {
-        const double light = reflected[k] * (double)q->power[k] / (SHINE_PI * (double)r2);
+        const double light = reflected[k] * (double)q->power[k] / (REFERENCE_PI * (double)r2);
         all[k] += light;
         limited[k] += (int)q->passed <= most ? light : 0;
     }
 }
 
-void caustics_gather(const caustics *c, const shine_place *place, int most, double limited[3], double all[3]) {
+void caustics_gather(const caustics *c, const path_vertex *place, int most, double limited[3], double all[3]) {
     for (int k = 0; k < 3; k++)
         limited[k] = all[k] = 0;
     if (c->count == 0)

@@ -35,6 +35,6 @@ void caustics_free(caustics *c);
 
 /* What the photons about a place give it: irradiance, W/m2, times Pi times the BRDF where it has a lobe. Split by whether they
  * have passed at most `most` mirrors and glasses. */
-void caustics_gather(const caustics *c, const shine_place *place, int most, double limited[3], double all[3]);
+void caustics_gather(const caustics *c, const path_vertex *place, int most, double limited[3], double all[3]);
 
 #endif

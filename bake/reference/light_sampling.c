@@ -25,7 +25,7 @@ static double light_of(const photon_scene *s, uint32_t triangle) {
     return m->lights ? luminance(m->emission) : 0;
 }
 
-static bool open_area(wide_lights *e) {
+static bool open_area(light_sampler *e) {
     const photon_scene *s = e->scene;
     double sum = 0;
     for (uint32_t i = 0; i < s->triangle_count; i++)
@@ -49,12 +49,12 @@ static bool open_area(wide_lights *e) {
 }
 
 /* Texel (x, y) of -1 .. sky_size. */
-static const float *texel(const wide_lights *e, int64_t x, int64_t y) {
+static const float *texel(const light_sampler *e, int64_t x, int64_t y) {
     return e->sky[(y + 1) * (e->sky_size + 2) + x + 1].radiance;
 }
 
 /* What the texel's square gets of the picture between texels, by the square's solid angle. */
-static double share_of(const wide_lights *e, uint32_t x, uint32_t y) {
+static double share_of(const light_sampler *e, uint32_t x, uint32_t y) {
     static const double part[3] = {0.125, 0.75, 0.125}; /* the mean of linear interpolation over the square */
     double sum = 0;
     for (int j = -1; j <= 1; j++)
@@ -62,10 +62,10 @@ static double share_of(const wide_lights *e, uint32_t x, uint32_t y) {
             sum += part[i + 1] * part[j + 1] * luminance(texel(e, (int64_t)x + i, (int64_t)y + j));
     const double u = fabs(2 * (x + 0.5) / e->sky_size - 1), v = fabs(2 * (y + 0.5) / e->sky_size - 1);
     const double fu = u + v > 1 ? 1 - v : u, fv = u + v > 1 ? 1 - u : v, w = 1 - u - v;
-    return sum / pow(fu * fu + fv * fv + w * w, 1.5); /* wide_sky_density() */
+    return sum / pow(fu * fu + fv * fv + w * w, 1.5); /* light_sampler_sky_density() */
 }
 
-static bool open_sky(wide_lights *e) {
+static bool open_sky(light_sampler *e) {
     const size_t size = e->sky_size;
     if (!e->sky || !e->sky_lights)
         return true;
@@ -86,25 +86,25 @@ static bool open_sky(wide_lights *e) {
     return true;
 }
 
-bool wide_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, wide_lights *out) {
-    *out = (wide_lights){.scene = s,
-                         .background = meta->background,
-                         .sky = meta->sky_size > 0 ? sky : NULL,
-                         .sky_size = meta->sky_size,
-                         .sky_lights = (meta->effects & VIT_BIT(SKY_LIGHT)) != 0};
+bool light_sampler_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, light_sampler *out) {
+    *out = (light_sampler){.scene = s,
+                           .background = meta->background,
+                           .sky = meta->sky_size > 0 ? sky : NULL,
+                           .sky_size = meta->sky_size,
+                           .sky_lights = (meta->effects & VIT_BIT(SKY_LIGHT)) != 0};
     if (open_area(out) && open_sky(out))
         return true;
-    wide_close(out);
+    light_sampler_close(out);
     return false;
 }
 
-void wide_close(wide_lights *e) {
+void light_sampler_close(light_sampler *e) {
     free(e->triangles);
     free(e->ends);
     free(e->density);
     free(e->sky_rows);
     free(e->sky_texels);
-    *e = (wide_lights){0};
+    *e = (light_sampler){0};
 }
 
 /* l_octahedral() of kernels/scene.clh: the direction's place in the square -1..1. */
@@ -116,7 +116,7 @@ static void octahedral(vec3 d, double *u, double *v) {
 }
 
 /* sky_radiance() of kernels/samples.cl. */
-void wide_sky(const wide_lights *e, vec3 d, double radiance[3]) {
+void light_sampler_sky(const light_sampler *e, vec3 d, double radiance[3]) {
     for (int k = 0; k < 3; k++)
         radiance[k] = (double)e->background[k];
     if (!e->sky)
@@ -135,7 +135,7 @@ void wide_sky(const wide_lights *e, vec3 d, double radiance[3]) {
                       v * ((1 - u) * (double)texel(e, x, y + 1)[k] + u * (double)texel(e, x + 1, y + 1)[k]);
 }
 
-bool wide_shines(const wide_lights *e, uint32_t triangle) {
+bool light_sampler_has(const light_sampler *e, uint32_t triangle) {
     return e->density && e->density[triangle] > 0;
 }
 
@@ -155,7 +155,7 @@ static uint32_t choose(const double *ends, uint32_t count, double *at) {
     return low;
 }
 
-bool wide_area_point(const wide_lights *e, vec3 p, double u, double v, wide_point *out) {
+bool light_sampler_area_point(const light_sampler *e, vec3 p, double u, double v, light_sampler_point *out) {
     const uint32_t triangle = e->triangles[choose(e->ends, e->count, &u)];
     const vit_triangle *t = e->scene->triangles + triangle;
     const double root = sqrt(u), b1 = root * (1 - v), b2 = root * v, b0 = 1 - root;
@@ -166,13 +166,13 @@ bool wide_area_point(const wide_lights *e, vec3 p, double u, double v, wide_poin
     const float distance = sqrtf(vec3_dot(to, to));
     out->to = vec3_unit(to);
     out->distance = distance * 0.9999f; /* not the light itself */
-    out->density = wide_area_density(e, triangle, out->to, distance);
+    out->density = light_sampler_area_density(e, triangle, out->to, distance);
     for (int k = 0; k < 3; k++)
         out->radiance[k] = (double)material_of(e->scene, triangle)->emission[k];
     return isfinite(out->density) && out->density > 0 && photon_opaque_at(e->scene, p, out->to, triangle);
 }
 
-bool wide_sky_point(const wide_lights *e, double u, double v, wide_point *out) {
+bool light_sampler_sky_point(const light_sampler *e, double u, double v, light_sampler_point *out) {
     const uint32_t size = e->sky_size;
     if (!e->sky_rows || !(e->sky_rows[size - 1] > 0))
         return false;
@@ -181,19 +181,19 @@ bool wide_sky_point(const wide_lights *e, double u, double v, wide_point *out) {
     const double dx = z < 0 ? (px < 0 ? ay - 1 : 1 - ay) : px, dy = z < 0 ? (py < 0 ? ax - 1 : 1 - ax) : py;
     out->to = vec3_unit((vec3){(float)dx, (float)dy, (float)z});
     out->distance = 3e38f;
-    out->density = wide_sky_density(e, out->to);
-    wide_sky(e, out->to, out->radiance);
+    out->density = light_sampler_sky_density(e, out->to);
+    light_sampler_sky(e, out->to, out->radiance);
     return out->density > 0;
 }
 
-double wide_area_density(const wide_lights *e, uint32_t triangle, vec3 d, float distance) {
+double light_sampler_area_density(const light_sampler *e, uint32_t triangle, vec3 d, float distance) {
     const double cosine = fabs((double)vec3_dot(vec3_unit(normal_of(e->scene, triangle)), d));
     return e->density ? e->density[triangle] * (double)distance * (double)distance / fmax(cosine, 1e-12) : 0;
 }
 
 /* A piece dx dy of the square is the piece of the unit octahedron |x| + |y| + |z| = 1 above it, of solid angle dx dy / (x2 + y2
  * + z2)^1.5. */
-double wide_sky_density(const wide_lights *e, vec3 d) {
+double light_sampler_sky_density(const light_sampler *e, vec3 d) {
     if (!e->sky_rows || !(e->sky_rows[e->sky_size - 1] > 0))
         return 0;
     double u, v;

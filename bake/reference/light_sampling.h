@@ -6,7 +6,7 @@
 
 #include "light/photon_rays.h"
 
-typedef struct wide_lights {
+typedef struct light_sampler {
     const photon_scene *scene;
     const float *background; /* W/(m2 sr) */
     /* Area lights: triangles, the sum of area times luminance up to each one's end, and for all of the scene's triangles the
@@ -20,31 +20,31 @@ typedef struct wide_lights {
     uint32_t sky_size;
     bool sky_lights;
     double *sky_rows, *sky_texels;
-} wide_lights;
+} light_sampler;
 
 /* `sky`: section SKYT. False: out of memory; there is nothing to close. The scene's records are used in place. */
-bool wide_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, wide_lights *out);
-void wide_close(wide_lights *e);
+bool light_sampler_open(const vit_scene *meta, const photon_scene *s, const vit_sky_texel *sky, light_sampler *out);
+void light_sampler_close(light_sampler *e);
 
 /* Radiance of the sky in the unit direction d, W/(m2 sr). */
-void wide_sky(const wide_lights *e, vec3 d, double radiance[3]);
+void light_sampler_sky(const light_sampler *e, vec3 d, double radiance[3]);
 /* Does the triangle light others? */
-bool wide_shines(const wide_lights *e, uint32_t triangle);
+bool light_sampler_has(const light_sampler *e, uint32_t triangle);
 
 /* What a place sees of a light: radiance from the unit direction `to`, whose density among the directions drawn is 1/sr. */
-typedef struct wide_point {
+typedef struct light_sampler_point {
     vec3 to;
     float distance; /* m, of a shadow ray */
     double radiance[3];
     double density;
-} wide_point;
+} light_sampler_point;
 
 /* A point of the area lights as seen from p; u, v: 0..1. False: it is cut out there. */
-bool wide_area_point(const wide_lights *e, vec3 p, double u, double v, wide_point *out);
+bool light_sampler_area_point(const light_sampler *e, vec3 p, double u, double v, light_sampler_point *out);
 /* A direction to the sky. False: the sky has no picture, or a black one; chance finds a constant sky soon enough. */
-bool wide_sky_point(const wide_lights *e, double u, double v, wide_point *out);
+bool light_sampler_sky_point(const light_sampler *e, double u, double v, light_sampler_point *out);
 /* Density of a direction that found the triangle `distance` metres away, or the sky: 0 if it is not drawn. */
-double wide_area_density(const wide_lights *e, uint32_t triangle, vec3 d, float distance);
-double wide_sky_density(const wide_lights *e, vec3 d);
+double light_sampler_area_density(const light_sampler *e, uint32_t triangle, vec3 d, float distance);
+double light_sampler_sky_density(const light_sampler *e, vec3 d);
 
 #endif

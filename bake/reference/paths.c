@@ -57,18 +57,18 @@ bool paths_open(const reference_input *in, unsigned threads, path_scene *out) {
                                 .box_pad = meta->box_pad};
     out->filter = paths_filter(meta);
     out->panes = meta->lights > 0 && has_panes(out);
-    if (!wide_open(meta, &out->scene, data[VIT_SECTION_SKYT], &out->wide))
+    if (!light_sampler_open(meta, &out->scene, data[VIT_SECTION_SKYT], &out->wide))
         return false;
     out->by_chance = out->wide.count > 0 || out->wide.sky_lights;
     if (photon_rays_open(&out->scene, threads, &out->rays))
         return true;
-    wide_close(&out->wide);
+    light_sampler_close(&out->wide);
     return false;
 }
 
 void paths_close(path_scene *p) {
     photon_rays_close(&p->rays);
-    wide_close(&p->wide);
+    light_sampler_close(&p->wide);
 }
 
 /* Light straight from the small lights that a place reflects: Pi times radiance where it has a lobe, else irradiance. */
@@ -90,7 +90,7 @@ static int pass_panes(const path_scene *s, vec3 o, vec3 d, float distance, doubl
         const photon_surface f = photon_surface_at(&s->scene, o, d, t, triangle);
         if (f.material->kind != VIT_THIN_GLASS)
             return -1;
-        const shine_paths way = shine_at_glass(d, f.normal, f.face, false, true, f.material->ior);
+        const specular_paths way = specular_at_glass(d, f.normal, f.face, false, true, f.material->ior);
         for (int k = 0; k < 3; k++)
             part[k] *= (1 - (double)way.mirror) * (double)f.material->specular[k];
         o = f.beyond;
@@ -100,7 +100,7 @@ static int pass_panes(const path_scene *s, vec3 o, vec3 d, float distance, doubl
 }
 
 /* `indirect`: without lights that give no indirect light. most: panes that limited light may pass. */
-static void look_at_lights(const path_scene *s, const shine_place *place, vec3 n, bool indirect, int most, small_lights *out,
+static void look_at_lights(const path_scene *s, const path_vertex *place, vec3 n, bool indirect, int most, small_lights *out,
                            uint64_t *rays) {
     *out = (small_lights){.open = {0}};
     for (uint32_t i = 0; i < s->meta->lights; i++) {
@@ -121,7 +121,7 @@ static void look_at_lights(const path_scene *s, const shine_place *place, vec3 n
                 continue;
         }
         if (place->glossy)
-            shine_reflectance(place, l, reflected);
+            specular_reflectance(place, l, reflected);
         for (int k = 0; k < 3; k++) {
             const double light_here = (double)light->intensity[k] * (double)e * reflected[k];
             if (panes == 0)
@@ -135,8 +135,8 @@ static void look_at_lights(const path_scene *s, const shine_place *place, vec3 n
 }
 
 /* What light that has come to a matt or glossy surface along -d does there. */
-static shine_place place_of(const photon_surface *s, vec3 normal, vec3 d) {
-    shine_place r = {.position = s->position,
+static path_vertex place_of(const photon_surface *s, vec3 normal, vec3 d) {
+    path_vertex r = {.position = s->position,
                      .face = s->face,
                      .normal = normal,
                      .out = vec3_scale(d, -1.0f),
@@ -150,7 +150,7 @@ static shine_place place_of(const photon_surface *s, vec3 normal, vec3 d) {
 void paths_pass_on(const photon_surface *s, float t, double random, vec3 *o, vec3 *d, double weight[3]) {
     const vit_material *m = s->material;
     const bool inside = m->kind == VIT_GLASS && s->back;
-    const shine_paths way = shine_at_glass(*d, s->normal, s->face, s->back, m->kind == VIT_THIN_GLASS, m->ior);
+    const specular_paths way = specular_at_glass(*d, s->normal, s->face, s->back, m->kind == VIT_THIN_GLASS, m->ior);
     const bool through = m->kind != VIT_MIRROR && random >= (double)way.mirror;
     *d = through ? way.refracted : way.mirrored;
     *o = through ? s->beyond : s->position;
@@ -177,7 +177,7 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
         const uint32_t triangle = photon_rays_nearest(&p->rays, o, d, &t);
         if (triangle == VIT_NONE) { /* 2. It ends in the sky, */
             double radiance[3];
-            wide_sky(&p->wide, d, radiance);
+            light_sampler_sky(&p->wide, d, radiance);
             for (int k = 0; k < 3; k++)
                 out->direct[k] += out->weight[k] * radiance[k] * (double)c->exposure;
             return;
@@ -189,16 +189,17 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
         if (m->kind == VIT_MATTE) { /* 3. or on a matt surface, the view sample, with its direct light, */
             out->hit = true;
             out->place = place_of(&s, s.normal, d);
-            const shine_place *q = &out->place;
+            const path_vertex *q = &out->place;
             const double albedo[3] = {(double)q->albedo.x, (double)q->albedo.y, (double)q->albedo.z};
             small_lights e;
             look_at_lights(p, q, q->normal, false, (int)p->bounces - 1, &e, rays);
             for (int k = 0; k < 3; k++) {
                 const double factor = (q->glossy ? 1 : albedo[k]), all = albedo[k] + (double)m->specular[k];
-                const double own = (double)m->emission[k] + factor * e.open[k] / SHINE_PI + all * (double)p->meta->ambient[k];
+                const double own =
+                    (double)m->emission[k] + factor * e.open[k] / REFERENCE_PI + all * (double)p->meta->ambient[k];
                 out->direct[k] += out->weight[k] * own * (double)c->exposure;
-                out->limited[k] = out->weight[k] * factor * e.limited[k] / SHINE_PI * (double)c->exposure;
-                out->unlimited[k] = out->weight[k] * factor * e.unlimited[k] / SHINE_PI * (double)c->exposure;
+                out->limited[k] = out->weight[k] * factor * e.limited[k] / REFERENCE_PI * (double)c->exposure;
+                out->unlimited[k] = out->weight[k] * factor * e.unlimited[k] / REFERENCE_PI * (double)c->exposure;
             }
             if (p->face_normals)
                 out->place.normal = q->face;
@@ -262,7 +263,7 @@ typedef struct walk {
     const caustics *caustics; /* may be NULL */
     uint64_t *rays;
     path_sums *out;
-    shine_place at; /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
+    path_vertex at; /* the last matt or glossy surface; its albedo, unless it is glossy, is in the weight */
     double weight[3];
     double density; /* of the direction taken from there; 0: a mirror or glass came after, beyond which lights are found by
                        chance */
@@ -298,11 +299,12 @@ static void add(const walk *w, uint32_t between, const double light[3]) {
 /* Radiance from direction d that chance has found; density: with which looking for it would have. */
 static void add_found(const walk *w, uint32_t between, const double radiance[3], double density) {
     const double share = w->density > 0 ? w->density / (w->density + density) : 1;
-    const double light[3] = {SHINE_PI * share * radiance[0], SHINE_PI * share * radiance[1], SHINE_PI * share * radiance[2]};
+    const double light[3] = {REFERENCE_PI * share * radiance[0], REFERENCE_PI * share * radiance[1],
+                             REFERENCE_PI * share * radiance[2]};
     add(w, between, light);
 }
 
-static void add_point(const walk *w, uint32_t between, const wide_point *e) {
+static void add_point(const walk *w, uint32_t between, const light_sampler_point *e) {
     const double cosine = (double)vec3_dot(w->at.normal, e->to);
     double reflected[3] = {1, 1, 1};
     if (!(cosine > 0) || !(vec3_dot(w->at.face, e->to) > 0.0f))
@@ -311,8 +313,8 @@ static void add_point(const walk *w, uint32_t between, const wide_point *e) {
     if (photon_rays_occluded(&w->p->rays, w->at.position, e->to, e->distance))
         return;
     if (w->at.glossy)
-        shine_reflectance(&w->at, e->to, reflected);
-    const double share = cosine / (e->density + shine_density(&w->at, e->to));
+        specular_reflectance(&w->at, e->to, reflected);
+    const double share = cosine / (e->density + specular_density(&w->at, e->to));
     for (int k = 0; k < 3; k++)
         reflected[k] *= share * e->radiance[k];
     add(w, between, reflected);
@@ -320,37 +322,37 @@ static void add_point(const walk *w, uint32_t between, const wide_point *e) {
 
 /* Looks for a point of the area lights and of the sky. */
 static void look_at_wide(const walk *w, uint32_t between, uint32_t dimension, uint32_t i) {
-    const wide_lights *e = &w->p->wide;
-    wide_point found;
+    const light_sampler *e = &w->p->wide;
+    light_sampler_point found;
     double u, v;
     if (e->count > 0) {
         sequence_fine(pcg(dimension ^ OF_AREA), i, &u, &v);
-        if (wide_area_point(e, w->at.position, u, v, &found))
+        if (light_sampler_area_point(e, w->at.position, u, v, &found))
             add_point(w, between, &found);
     }
     if (e->sky_rows) {
         sequence_fine(pcg(dimension ^ OF_SKY), i, &u, &v);
-        if (wide_sky_point(e, u, v, &found))
+        if (light_sampler_sky_point(e, u, v, &found))
             add_point(w, between, &found);
     }
 }
 
 /* Draws the direction in which the path goes on from w->at. False: it ends, under the surface. */
 static bool scatter(walk *w, bool first, float u, float v, vec3 *d) {
-    const shine_place *s = &w->at;
-    *d = shine_direction(s, u, v);
+    const path_vertex *s = &w->at;
+    *d = specular_direction(s, u, v);
     if ((first || s->glossy) && !(vec3_dot(*d, s->face) > 0.0f))
         return false;
     if (w->p->by_chance || s->glossy)
-        w->density = shine_density(s, *d);
+        w->density = specular_density(s, *d);
     if (s->glossy) {
         double reflected[3];
         const double cosine = (double)vec3_dot(s->normal, *d);
-        shine_reflectance(s, *d, reflected);
+        specular_reflectance(s, *d, reflected);
         if (!(cosine > 0) || !(w->density > 0))
             return false;
         for (int k = 0; k < 3; k++)
-            w->weight[k] *= reflected[k] * cosine / (SHINE_PI * w->density);
+            w->weight[k] *= reflected[k] * cosine / (REFERENCE_PI * w->density);
     }
     return true;
 }
@@ -402,15 +404,15 @@ static void trace(const path_scene *p, const caustics *c, const view_sample *v, 
             double radiance[3];
             if (!p->wide.sky_lights)
                 return;
-            wide_sky(&p->wide, d, radiance);
-            add_found(&w, hit - 1, radiance, wide_sky_density(&p->wide, d));
+            light_sampler_sky(&p->wide, d, radiance);
+            add_found(&w, hit - 1, radiance, light_sampler_sky_density(&p->wide, d));
             return;
         }
         const photon_surface s = photon_surface_at(&p->scene, o, d, t, triangle);
-        if (wide_shines(&p->wide, triangle)) {
+        if (light_sampler_has(&p->wide, triangle)) {
             const double radiance[3] = {(double)s.material->emission[0], (double)s.material->emission[1],
                                         (double)s.material->emission[2]};
-            add_found(&w, hit - 1, radiance, wide_area_density(&p->wide, triangle, d, t));
+            add_found(&w, hit - 1, radiance, light_sampler_area_density(&p->wide, triangle, d, t));
         }
         passing = s.material->kind != VIT_MATTE;
         if (passing) {
@@ -429,10 +431,10 @@ static void trace(const path_scene *p, const caustics *c, const view_sample *v, 
 
 /* Adds paths' sums as the view sample reflects them. */
 static void reflect(const path_scene *p, const view_sample *v, const path_sums *sums, path_sums *out) {
-    const shine_place *s = &v->place;
+    const path_vertex *s = &v->place;
     const double albedo[3] = {(double)s->albedo.x, (double)s->albedo.y, (double)s->albedo.z};
     for (int k = 0; k < 3; k++) {
-        const double scale = v->weight[k] * (s->glossy ? 1 : albedo[k]) / SHINE_PI * (double)p->camera->exposure;
+        const double scale = v->weight[k] * (s->glossy ? 1 : albedo[k]) / REFERENCE_PI * (double)p->camera->exposure;
         out->direct[k] += scale * sums->direct[k];
         out->limited[k] += scale * sums->limited[k];
         out->unlimited[k] += scale * sums->unlimited[k];

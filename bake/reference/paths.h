@@ -28,7 +28,7 @@ typedef struct path_scene {
     atlas atlas;
     photon_scene scene;
     photon_rays rays;
-    wide_lights wide;
+    light_sampler wide;
 } path_scene;
 
 /* Uses the sections in place; `out` must stay where it is until paths_close(). False: Embree fails, or memory; nothing to
@@ -42,7 +42,7 @@ typedef struct view_sample {
         random; /* the pixel has several copies, or glass is seen: each path has a view sample of its own; only x and y count */
     bool hit;
     uint32_t x, y;
-    shine_place place;
+    path_vertex place;
     double weight[3];                /* that mirrors and glass on the way left */
     double direct[3];                /* emission or background included; without what paths find of area lights and the sky */
     double limited[3], unlimited[3]; /* straight from lights through panes: indirect light, since photons pass these */

@@ -1,4 +1,4 @@
-/* Rounds of some paths a pixel, until the standard error is small enough. A pixel's numbers come from its own paths in
+/* Rounds of some paths per pixel, until the standard error is small enough. A pixel's numbers come from its own paths in
  * a fixed order, so that neither threads nor ranks show. */
 #define _POSIX_C_SOURCE 200809L
 #include "reference/caustics.h"

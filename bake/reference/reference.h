@@ -25,7 +25,7 @@ typedef struct reference_input {
     uint32_t every;   /* pixels (every * i + every / 2, every * j + every / 2) of the frame; 1: all */
     uint32_t bounces; /* hits of the limited paths: up to bounces - 1 reflections, as vit_scene.bounces */
     double target;    /* stop when the standard error's NMSE (mean variance / squared mean of the total) is below this, > 0 */
-    uint32_t max_samples; /* and at so many paths a pixel in any case; whole rounds, 1 .. REFERENCE_MOST */
+    uint32_t max_samples; /* and at so many paths per pixel in any case; whole rounds, 1 .. REFERENCE_MOST */
     bool face_normals; /* the first hit's irradiance, but that of small lights' direct light, is about its geometric normal too,
                         * as photons count it; independent random numbers, so that the two pictures' errors are */
     unsigned threads;  /* 0: all cores, shared with the ranks on this machine; changes no bit, nor does the number of ranks */
@@ -38,12 +38,12 @@ typedef struct reference_input {
 /* A pixel has so many low-discrepancy sequences, independent of each other: variance is that between their means, with one
  * degree of freedom less. Each round adds a few paths to each. */
 #define REFERENCE_SEQUENCES 4u
-#define REFERENCE_ROUND 16u       /* paths a pixel and round */
-#define REFERENCE_MOST (1u << 18) /* paths a pixel, at most */
+#define REFERENCE_ROUND 16u       /* paths per pixel and round */
+#define REFERENCE_MOST (1u << 18) /* paths per pixel, at most */
 
 typedef struct reference {
     uint32_t width, height;  /* of the grid */
-    uint32_t samples;        /* paths a pixel */
+    uint32_t samples;        /* paths per pixel */
     double *direct;          /* emission, background and ambient light included */
     double *limited;         /* indirect light of at most bounces - 1 reflections */
     double *unlimited;       /* indirect light of all reflections (ended by Russian roulette) */

@@ -39,7 +39,7 @@ static void print_row(const cost_results *r, uint32_t i, FILE *to) {
     ERRORS(X, indirect)
     ERRORS(X, unlimited)
 #undef X
-    (void)fprintf(to, ",%d,%d", s->front, s->front_relmse);
+    (void)fprintf(to, ",%d,%d", s->pareto, s->pareto_relmse);
     comma_number(to, report_equal_ms(r, s, REPORT_NMSE));
     comma_number(to, report_equal_ms(r, s, REPORT_RELMSE));
     (void)fprintf(to, ",%d\n", s->elsewhere);

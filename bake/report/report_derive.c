@@ -13,18 +13,18 @@ double report_error(const cost_setting *s, report_measure by) {
     return by == REPORT_NMSE ? s->total.nmse : s->total.relmse;
 }
 
-bool report_on_front(const cost_setting *s, report_measure by) {
-    return by == REPORT_NMSE ? s->front : s->front_relmse;
+bool report_on_pareto_front(const cost_setting *s, report_measure by) {
+    return by == REPORT_NMSE ? s->pareto : s->pareto_relmse;
 }
 
 report_drawn report_set(const cost_setting *s, report_measure by) {
-    return report_on_front(s, by) ? REPORT_FRONT : s->elsewhere ? REPORT_ELSEWHERE : REPORT_OTHERS;
+    return report_on_pareto_front(s, by) ? REPORT_FRONT : s->elsewhere ? REPORT_ELSEWHERE : REPORT_OTHERS;
 }
 
-uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out) {
+uint32_t report_pareto_front(const cost_results *r, report_measure by, uint32_t *out) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < r->count; i++) {
-        if (!report_on_front(&r->settings[i], by))
+        if (!report_on_pareto_front(&r->settings[i], by))
             continue;
         uint32_t at = count++;
         for (; at > 0 && r->settings[out[at - 1]].ms > r->settings[i].ms; at--)

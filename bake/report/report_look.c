@@ -53,10 +53,10 @@ static bool print_setting(const cost_results *r, const report_pictures *p, uint3
     (void)fprintf(to, " ms, NMSE %.3g, relMSE %.3g, bias ", s->total.nmse, s->total.relmse);
     text_format(to, "%+.1f", 100 * s->total.bias);
     (void)fprintf(to, " %%%s</p><div class=\"row\">\n",
-                  s->front && s->front_relmse ? ", on both fronts"
-                  : s->front                  ? ", on the front of NMSE"
-                  : s->front_relmse           ? ", on the front of relMSE"
-                                              : "");
+                  s->pareto && s->pareto_relmse ? ", on both fronts"
+                  : s->pareto                   ? ", on the front of NMSE"
+                  : s->pareto_relmse            ? ", on the front of relMSE"
+                                                : "");
     const bool done = print_image(r, p, i, "frame", "Frame", report_frame_uri, to) &&
                       print_image(r, p, i, "signed", "Signed error", report_signed_uri, to) &&
                       print_image(r, p, i, "squared", "Squared error", report_squared_uri, to);

@@ -49,14 +49,14 @@ static void print_facts(const cost_results *r, FILE *to) {
 /* Indices of the points in each of the plot's data sets, in the order of report_plots.c (the front by time), so that report.js
  * can name them. */
 static bool print_series(const cost_results *r, report_measure by, FILE *to) {
-    uint32_t *front = malloc(r->count * sizeof front[0]);
-    if (!front)
+    uint32_t *pareto = malloc(r->count * sizeof pareto[0]);
+    if (!pareto)
         return false;
-    const uint32_t count = report_front(r, by, front);
+    const uint32_t count = report_pareto_front(r, by, pareto);
     (void)fputs("<figure class=\"chart\" data-front=\"", to);
     for (uint32_t k = 0; k < count; k++)
-        if (front[k] != 0)
-            (void)fprintf(to, "%" PRIu32 " ", front[k]);
+        if (pareto[k] != 0)
+            (void)fprintf(to, "%" PRIu32 " ", pareto[k]);
     (void)fputs("\" data-others=\"", to);
     for (uint32_t i = 1; i < r->count; i++)
         if (report_set(&r->settings[i], by) == REPORT_OTHERS)
@@ -66,7 +66,7 @@ static bool print_series(const cost_results *r, report_measure by, FILE *to) {
         if (report_set(&r->settings[i], by) == REPORT_ELSEWHERE)
             (void)fprintf(to, "%" PRIu32 " ", i);
     (void)fputs("\">\n", to);
-    free(front);
+    free(pareto);
     return true;
 }
 
@@ -96,7 +96,7 @@ static vit_status print_error_plots(const cost_results *r, FILE *to, vit_text *w
     (void)fputs("</section>\n<section id=\"pareto\"><h2>The fronts</h2>\n"
                 "<p>Fastest first, with the time that the path tracer takes to the same error.</p>\n",
                 to);
-    report_table_front(r, to);
+    report_table_pareto(r, to);
     (void)fputs("</section>\n", to);
     return status;
 }

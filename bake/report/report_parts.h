@@ -22,12 +22,12 @@ void text_count(FILE *to, uint64_t count);                    /* exact, digits i
 typedef enum report_measure { REPORT_NMSE, REPORT_RELMSE } report_measure;
 const char *report_measure_name(report_measure by);
 double report_error(const cost_setting *s, report_measure by); /* total light */
-bool report_on_front(const cost_setting *s, report_measure by);
+bool report_on_pareto_front(const cost_setting *s, report_measure by);
 /* How a setting but the default is drawn. */
 typedef enum report_drawn { REPORT_OTHERS, REPORT_FRONT, REPORT_ELSEWHERE } report_drawn;
 report_drawn report_set(const cost_setting *s, report_measure by);
 /* Indices of the front's settings, fastest first; `out` has room for r->count. */
-uint32_t report_front(const cost_results *r, report_measure by, uint32_t *out);
+uint32_t report_pareto_front(const cost_results *r, report_measure by, uint32_t *out);
 /* Milliseconds until the path tracer's error is the setting's; NAN where either is unknown or 0. */
 double report_equal_ms(const cost_results *r, const cost_setting *s, report_measure by);
 double report_equal_paths(const cost_results *r, const cost_setting *s, report_measure by); /* a pixel */
@@ -127,7 +127,7 @@ vit_status report_file(const void *results, const char *folder, const char *name
 
 /* ---- the page: report_page.c joins report_tables.c (tables), report_look.c (pictures) and the plots ---- */
 void report_table_settings(const cost_results *r, FILE *to);
-void report_table_front(const cost_results *r, FILE *to);
+void report_table_pareto(const cost_results *r, FILE *to);
 void report_table_prices(const cost_results *r, report_measure by, FILE *to);
 void report_table_errors(const cost_results *r, FILE *to); /* bounce limit */
 void report_summary(const cost_results *r, FILE *to);

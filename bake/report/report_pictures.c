@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A picture of noise takes up to 4 bytes a pixel in base64 as colours and 1.2 as one map: 14 x (4 + 2 x 1.2) x 70 000 = 6.3 MB.
+/* A picture of noise takes up to 4 bytes per pixel in base64 as colours and 1.2 as one map: 14 x (4 + 2 x 1.2) x 70 000 = 6.3
+ * MB.
  */
 enum { MOST_PIXELS = 70000, MOST_SETTINGS = 14, WORST = 3 };
 
@@ -42,21 +43,21 @@ bool report_pictures_choose(const cost_results *r, report_pictures *out) {
     out->width = (f->width + out->block - 1) / out->block;
     out->height = (f->height + out->block - 1) / out->block;
     out->settings = malloc(MOST_SETTINGS * sizeof out->settings[0]);
-    uint32_t *front = malloc(r->count * sizeof front[0]);
-    if (!out->settings || !front) {
-        free(front);
+    uint32_t *pareto = malloc(r->count * sizeof pareto[0]);
+    if (!out->settings || !pareto) {
+        free(pareto);
         report_pictures_free(out);
         return false;
     }
     show(out, r, 0, MOST_SETTINGS);
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE; by++) {
-        const uint32_t count = report_front(r, by, front), room = MOST_SETTINGS - WORST;
+        const uint32_t count = report_pareto_front(r, by, pareto), room = MOST_SETTINGS - WORST;
         for (uint32_t k = 0; k < room && count > 0; k++) /* evenly along a front that is longer than the room */
-            show(out, r, front[count <= room ? (k < count ? k : count - 1) : k * (count - 1) / (room - 1)], room);
+            show(out, r, pareto[count <= room ? (k < count ? k : count - 1) : k * (count - 1) / (room - 1)], room);
     }
     for (uint32_t k = 0, w; k < WORST && (w = worst(out, r)) < r->count; k++)
         show(out, r, w, MOST_SETTINGS);
-    free(front);
+    free(pareto);
     return true;
 }
 

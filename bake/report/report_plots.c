@@ -15,7 +15,7 @@ typedef struct plot {
     report_drawing drawing;
     double left, right, top, bottom;
     report_axis x, y; /* milliseconds, error */
-    uint32_t *front, front_count;
+    uint32_t *pareto, front_count;
 } plot;
 
 static double px(const plot *p, double ms) {
@@ -60,7 +60,7 @@ static void print_data(const plot *p, FILE *to) {
             (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
     (void)fputs("EOD\n$stair << EOD\nNaN NaN\n", to);
     for (uint32_t k = 0; k < p->front_count; k++) {
-        const uint32_t i = p->front[k];
+        const uint32_t i = p->pareto[k];
         if (k == 0)
             (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), p->y.high);
         (void)fprintf(to, "%.9g %.9g\n", ms_of(p, i), error_of(p, i));
@@ -69,8 +69,8 @@ static void print_data(const plot *p, FILE *to) {
     }
     (void)fputs("EOD\n$front << EOD\nNaN NaN\n", to);
     for (uint32_t k = 0; k < p->front_count; k++)
-        if (p->front[k] != 0)
-            (void)fprintf(to, "%.9g %.9g\n", ms_of(p, p->front[k]), error_of(p, p->front[k]));
+        if (p->pareto[k] != 0)
+            (void)fprintf(to, "%.9g %.9g\n", ms_of(p, p->pareto[k]), error_of(p, p->pareto[k]));
     (void)fputs("EOD\n$default << EOD\nNaN NaN\n", to);
     if (drawn(p, 0))
         (void)fprintf(to, "%.9g %.9g\n", ms_of(p, 0), error_of(p, 0));
@@ -101,8 +101,8 @@ static uint32_t obstacles(const plot *p, report_span *out) {
         }
     double above = p->top;
     for (uint32_t k = 0; k < p->front_count; k++) {
-        const double x = px(p, ms_of(p, p->front[k])), y = py(p, error_of(p, p->front[k]));
-        const double until = k + 1 < p->front_count ? px(p, ms_of(p, p->front[k + 1])) : p->right;
+        const double x = px(p, ms_of(p, p->pareto[k])), y = py(p, error_of(p, p->pareto[k]));
+        const double until = k + 1 < p->front_count ? px(p, ms_of(p, p->pareto[k + 1])) : p->right;
         out[count++] = (report_span){x - 1, above, x + 1, y};
         out[count++] = (report_span){x, y - 1, until, y + 1};
         above = y;
@@ -125,7 +125,7 @@ static void print_label(const plot *p, const report_label *l, const char *name, 
 static bool numbered(const plot *p) {
     bool longer = p->front_count > NAMES;
     for (uint32_t k = 0; k < p->front_count; k++)
-        longer = longer || text_length(p->r->settings[p->front[k]].name) > NAME_MOST;
+        longer = longer || text_length(p->r->settings[p->pareto[k]].name) > NAME_MOST;
     return longer;
 }
 
@@ -142,9 +142,9 @@ static void print_key(const plot *p, FILE *to) {
         return;
     (void)fputs("<ul class=\"key\">", to);
     for (uint32_t k = 0; k < p->front_count; k++)
-        if (p->front[k] != 0) {
-            (void)fprintf(to, "<li data-setting=\"%u\"><b class=\"front\">%u</b> ", p->front[k], p->front[k]);
-            text_html(to, p->r->settings[p->front[k]].name);
+        if (p->pareto[k] != 0) {
+            (void)fprintf(to, "<li data-setting=\"%u\"><b class=\"front\">%u</b> ", p->pareto[k], p->pareto[k]);
+            text_html(to, p->r->settings[p->pareto[k]].name);
             (void)fputs("</li>", to);
         }
     (void)fputs("</ul>\n", to);
@@ -159,8 +159,8 @@ static bool print_labels(const plot *p, FILE *to) {
         if (drawn(p, 0))
             named[count++] = 0;
         for (uint32_t k = 0; k < p->front_count; k++)
-            if (p->front[k] != 0)
-                named[count++] = p->front[k];
+            if (p->pareto[k] != 0)
+                named[count++] = p->pareto[k];
         for (uint32_t k = 0; k < count; k++) {
             char name[COST_NAME];
             name_point(p, named[k], name);
@@ -189,8 +189,8 @@ static bool prepare(plot *p, const double (*more)[2], uint32_t more_count, doubl
     const uint32_t count = p->r->count;
     double *ms = malloc(((size_t)count + more_count) * sizeof ms[0]),
            *error = malloc(((size_t)count + more_count) * sizeof error[0]);
-    p->front = malloc(count * sizeof p->front[0]);
-    bool done = ms && error && p->front;
+    p->pareto = malloc(count * sizeof p->pareto[0]);
+    bool done = ms && error && p->pareto;
     if (done) {
         uint32_t used = 0;
         for (uint32_t i = 0; i < count; i++)
@@ -202,10 +202,10 @@ static bool prepare(plot *p, const double (*more)[2], uint32_t more_count, doubl
             ms[used] = more[i][0];
             error[used++] = more[i][1];
         }
-        const uint32_t all = report_front(p->r, p->by, p->front);
+        const uint32_t all = report_pareto_front(p->r, p->by, p->pareto);
         for (uint32_t k = 0; k < all; k++)
-            if (drawn(p, p->front[k]))
-                p->front[p->front_count++] = p->front[k];
+            if (drawn(p, p->pareto[k]))
+                p->pareto[p->front_count++] = p->pareto[k];
         done = report_axis_of(ms, used, 0.12, 0.06, &p->x) && report_axis_of(error, used, 0.12, above, &p->y);
     }
     free(ms);
@@ -253,11 +253,11 @@ vit_status report_plot_error(const cost_results *r, report_measure by, FILE *to,
         print_key(&p, to);
     }
     free(script);
-    free(p.front);
+    free(p.pareto);
     return status;
 }
 
-/* Its error falls as 1 / time: a straight line, marked at 1, 4, 16, ... paths a pixel; an arrow from the default to it. */
+/* Its error falls as 1 / time: a straight line, marked at 1, 4, 16, ... paths per pixel; an arrow from the default to it. */
 static void print_tracer(const plot *p, double one, FILE *to) {
     const double ms = p->r->path_tracer_ms, from = fmax(p->x.low, ms * one / p->y.high),
                  until = fmin(p->x.high, ms * one / p->y.low);
@@ -311,6 +311,6 @@ vit_status report_plot_tracer(const cost_results *r, report_measure by, FILE *to
         status = text && fclose(text) == 0 ? draw(&p, script, to, why) : out_of_memory(why);
     }
     free(script);
-    free(p.front);
+    free(p.pareto);
     return status;
 }

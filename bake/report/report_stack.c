@@ -103,7 +103,7 @@ static void print_colour(const stack *s, const cost_results *r, int colour, FILE
 static void print_rows(const cost_results *r, FILE *to) {
     for (uint32_t i = 0; i < r->count; i++) {
         const cost_setting *s = &r->settings[i];
-        const int colour = i == 0 ? DEFAULT : s->front || s->front_relmse ? FRONT : SOFT;
+        const int colour = i == 0 ? DEFAULT : s->pareto || s->pareto_relmse ? FRONT : SOFT;
         (void)fputs("set label ", to);
         char name[COST_NAME + 12];
         (void)snprintf(name, sizeof name, "%u  %s", i, s->name);

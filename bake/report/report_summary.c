@@ -19,10 +19,10 @@ static void say_default(const cost_results *r, FILE *to) {
     (void)fprintf(to, " ms) at NMSE %.3g, relMSE %.3g and a bias of ", d->total.nmse, d->total.relmse);
     text_format(to, "%+.1f", 100 * d->total.bias);
     (void)fprintf(to, " %%. It is on %s.</li>\n",
-                  d->front && d->front_relmse ? "both Pareto fronts"
-                  : d->front                  ? "the Pareto front of NMSE, not on that of relMSE"
-                  : d->front_relmse           ? "the Pareto front of relMSE, not on that of NMSE"
-                                    : "neither Pareto front: others are no slower and no further off, and better in one");
+                  d->pareto && d->pareto_relmse ? "both Pareto fronts"
+                  : d->pareto                   ? "the Pareto front of NMSE, not on that of relMSE"
+                  : d->pareto_relmse            ? "the Pareto front of relMSE, not on that of NMSE"
+                                     : "neither Pareto front: others are no slower and no further off, and better in one");
 }
 
 /* Frames of an idle machine deviate by 1 or 2 %. */
@@ -56,19 +56,19 @@ static void say_tracer(const cost_results *r, FILE *to) {
     (void)fputs(".</li>\n", to);
 }
 
-static void say_front(const cost_results *r, uint32_t *front, FILE *to) {
-    const uint32_t count = report_front(r, REPORT_NMSE, front);
+static void say_front(const cost_results *r, uint32_t *pareto, FILE *to) {
+    const uint32_t count = report_pareto_front(r, REPORT_NMSE, pareto);
     if (count == 0)
         return;
-    const cost_setting *fast = &r->settings[front[0]], *near = &r->settings[front[count - 1]];
+    const cost_setting *fast = &r->settings[pareto[0]], *near = &r->settings[pareto[count - 1]];
     (void)fprintf(to, "<li>%u of %u settings are on the front of NMSE, from ", count, r->count);
     text_ms(to, fast->ms);
     (void)fprintf(to, " ms at %.3g (", fast->total.nmse);
-    name(r, front[0], to);
+    name(r, pareto[0], to);
     (void)fputs(") to ", to);
     text_ms(to, near->ms);
     (void)fprintf(to, " ms at %.3g (", near->total.nmse);
-    name(r, front[count - 1], to);
+    name(r, pareto[count - 1], to);
     (void)fputs(").</li>\n", to);
 }
 
@@ -115,18 +115,18 @@ static void say_reference(const cost_results *r, FILE *to) {
 }
 
 void report_summary(const cost_results *r, FILE *to) {
-    uint32_t *front = malloc(r->count * sizeof front[0]);
+    uint32_t *pareto = malloc(r->count * sizeof pareto[0]);
     report_price *prices = malloc(r->count * sizeof prices[0]);
     (void)fputs("<ul class=\"summary\">\n", to);
-    if (front && prices) {
+    if (pareto && prices) {
         say_default(r, to);
         say_noise(r, to);
         say_tracer(r, to);
-        say_front(r, front, to);
+        say_front(r, pareto, to);
         say_price(r, prices, to);
         say_reference(r, to);
     }
     (void)fputs("</ul>\n", to);
-    free(front);
+    free(pareto);
     free(prices);
 }

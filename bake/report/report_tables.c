@@ -47,9 +47,9 @@ static void cell_ms(FILE *to, double ms) {
 
 static void cell_name(FILE *to, const cost_setting *s, bool is_default) {
     (void)fprintf(to, "<th scope=\"row\"%s title=\"",
-                  is_default                    ? " class=\"default\""
-                  : s->front || s->front_relmse ? " class=\"front\""
-                                                : "");
+                  is_default                      ? " class=\"default\""
+                  : s->pareto || s->pareto_relmse ? " class=\"front\""
+                                                  : "");
     text_html(to, s->values);
     (void)fputs("\">", to);
     text_html(to, s->name);
@@ -57,7 +57,7 @@ static void cell_name(FILE *to, const cost_setting *s, bool is_default) {
 }
 
 static const char *front_text(const cost_setting *s) {
-    return s->front && s->front_relmse ? "both" : s->front ? "NMSE" : s->front_relmse ? "relMSE" : "";
+    return s->pareto && s->pareto_relmse ? "both" : s->pareto ? "NMSE" : s->pareto_relmse ? "relMSE" : "";
 }
 
 static void print_setting(const cost_results *r, uint32_t i, FILE *to) {
@@ -123,7 +123,7 @@ static void cell_ratio(FILE *to, double ratio) {
 }
 
 /* Both fronts in one table, fastest first; the default is there in any case. */
-void report_table_front(const cost_results *r, FILE *to) {
+void report_table_pareto(const cost_results *r, FILE *to) {
     static const column columns[] = {{"#", true},
                                      {"Setting", false},
                                      {"On the front of", false},
@@ -146,7 +146,7 @@ void report_table_front(const cost_results *r, FILE *to) {
         for (uint32_t i = 0; i < r->count; i++) {
             const cost_setting *s = &r->settings[i];
             const bool after = s->ms > above || (s->ms == above && i > last);
-            if ((i == 0 || s->front || s->front_relmse) && after && (next == r->count || s->ms < r->settings[next].ms))
+            if ((i == 0 || s->pareto || s->pareto_relmse) && after && (next == r->count || s->ms < r->settings[next].ms))
                 next = i;
         }
         if (next == r->count)

@@ -27,8 +27,8 @@ typedef struct cost_setting {
     cost_error unlimited;       /* total light against the unlimited reference */
     float *image;               /* total light on the reference's grid: 3 floats a pixel, linear, exposed */
     bool elsewhere; /* differs from the default in what no quality block holds (output size, lanes): not for --fit, no front */
-    bool front;     /* no other setting is at once faster and nearer to the reference, by ms and total.nmse */
-    bool front_relmse; /* likewise by total.relmse */
+    bool pareto;    /* no other setting is at once faster and nearer to the reference, by ms and total.nmse */
+    bool pareto_relmse; /* likewise by total.relmse */
 } cost_setting;
 
 typedef struct cost_results {

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool fields_fail(const place *at, const config_setting_t *setting, const char *format, ...) {
+bool fields_fail(const config_place *at, const config_setting_t *setting, const char *format, ...) {
     char *text = at->why->text;
     const size_t size = sizeof at->why->text;
     const char *file = setting ? config_setting_source_file(setting) : NULL;
@@ -52,7 +52,7 @@ static bool in_range(double value, const char *allowed) {
     return isfinite(value) && (*allowed == '[' ? value >= lo : value > lo) && (*end == ']' ? value <= hi : value < hi);
 }
 
-static bool read_number(const place *at, const config_setting_t *s, const field *f, double *out) {
+static bool read_number(const config_place *at, const config_setting_t *s, const config_field *f, double *out) {
     const char *also = f->kind == FIELD_AUTO ? " or \"auto\"" : "";
     if (f->kind == FIELD_AUTO && config_setting_type(s) == CONFIG_TYPE_STRING &&
         !strcmp(config_setting_get_string(s), "auto")) {
@@ -68,7 +68,7 @@ static bool read_number(const place *at, const config_setting_t *s, const field 
     return true;
 }
 
-static bool read_whole(const place *at, const config_setting_t *s, const field *f, int *out) {
+static bool read_whole(const config_place *at, const config_setting_t *s, const config_field *f, int *out) {
     const int type = config_setting_type(s);
     if (type != CONFIG_TYPE_INT && type != CONFIG_TYPE_INT64)
         return fields_fail(at, s, "'%s' must be a whole number in %s", f->name, f->allowed);
@@ -79,7 +79,7 @@ static bool read_whole(const place *at, const config_setting_t *s, const field *
     return true;
 }
 
-static bool read_choice(const place *at, const config_setting_t *s, const field *f, bool *out) {
+static bool read_choice(const config_place *at, const config_setting_t *s, const config_field *f, bool *out) {
     const char *bar = strchr(f->allowed, '|');
     const int first = (int)(bar - f->allowed);
     const char *text = config_setting_type(s) == CONFIG_TYPE_STRING ? config_setting_get_string(s) : NULL;
@@ -117,7 +117,7 @@ static void spell(const char *list, const char *open, const char *close, char *o
     }
 }
 
-static bool read_listed(const place *at, const config_setting_t *s, const field *f, int *out) {
+static bool read_listed(const config_place *at, const config_setting_t *s, const config_field *f, int *out) {
     const int type = config_setting_type(s);
     const bool number = f->kind == FIELD_AMONG,
                fits = number ? type == CONFIG_TYPE_INT || type == CONFIG_TYPE_INT64 : type == CONFIG_TYPE_STRING;
@@ -136,7 +136,7 @@ static bool read_listed(const place *at, const config_setting_t *s, const field 
     return true;
 }
 
-static bool read_text(const place *at, const config_setting_t *s, const field *f, char *out) {
+static bool read_text(const config_place *at, const config_setting_t *s, const config_field *f, char *out) {
     const char *text = config_setting_type(s) == CONFIG_TYPE_STRING ? config_setting_get_string(s) : NULL;
     if (!text)
         return fields_fail(at, s, "'%s' must be text in \"quotes\"", f->name);
@@ -149,7 +149,7 @@ static bool read_text(const place *at, const config_setting_t *s, const field *f
     return true;
 }
 
-static bool read_vector(const place *at, const config_setting_t *s, const field *f, double *out) {
+static bool read_vector(const config_place *at, const config_setting_t *s, const config_field *f, double *out) {
     if (f->kind == FIELD_SCALE && is_number(s)) {
         if (!read_number(at, s, f, &out[0]))
             return false;
@@ -171,7 +171,7 @@ static bool read_vector(const place *at, const config_setting_t *s, const field 
     return true;
 }
 
-static bool read_field(const place *at, const config_setting_t *s, const field *f, char *out) {
+static bool read_field(const config_place *at, const config_setting_t *s, const config_field *f, char *out) {
     void *to = out + f->offset;
     switch (f->kind) {
     case FIELD_NUMBER:
@@ -202,10 +202,11 @@ static bool read_field(const place *at, const config_setting_t *s, const field *
 }
 
 static const char *field_name(const void *list, int index) {
-    return ((const field *)list)[index].name;
+    return ((const config_field *)list)[index].name;
 }
 
-bool fields_read(const place *at, const config_setting_t *group, const field *fields, int count, void *out, uint32_t *seen) {
+bool fields_read(const config_place *at, const config_setting_t *group, const config_field *fields, int count, void *out,
+                 uint32_t *seen) {
     *seen = 0;
     if (!config_setting_is_group(group))
         return fields_fail(at, group, "must be a group, { ... }");
@@ -235,7 +236,7 @@ static void write_number(double value, char *text, size_t room) {
     }
 }
 
-size_t fields_write(const field *f, const void *from, char *text, size_t room) {
+size_t fields_write(const config_field *f, const void *from, char *text, size_t room) {
     const void *value = (const char *)from + f->offset;
     char word[64] = "";
     switch (f->kind) {
@@ -281,7 +282,7 @@ size_t fields_write(const field *f, const void *from, char *text, size_t room) {
     return used < 0 ? 0 : (size_t)used < room ? (size_t)used : room - 1;
 }
 
-bool fields_put(const field *f, const char *text, void *out) {
+bool fields_put(const config_field *f, const char *text, void *out) {
     void *to = (char *)out + f->offset;
     long whole;
     double number;
@@ -324,7 +325,7 @@ bool fields_put(const field *f, const char *text, void *out) {
     return false;
 }
 
-void fields_wants(const field *f, const char *unit, char *text, size_t room) {
+void fields_wants(const config_field *f, const char *unit, char *text, size_t room) {
     const bool number = f->kind == FIELD_WHOLE || f->kind == FIELD_NUMBER || f->kind == FIELD_AUTO;
     const char *list = f->kind == FIELD_SWITCH ? "0|1" : f->allowed, *comma = strchr(list, ',');
     if (number) {
@@ -343,7 +344,7 @@ void fields_wants(const field *f, const char *unit, char *text, size_t room) {
         (void)snprintf(text, room, "%s", list);
 }
 
-void fields_values(const field *f, const char *unit, char *text, size_t room) {
+void fields_values(const config_field *f, const char *unit, char *text, size_t room) {
     char list[128];
     const bool words = f->kind == FIELD_CHOICE || f->kind == FIELD_WORD;
     if (f->kind == FIELD_SWITCH)
@@ -356,7 +357,7 @@ void fields_values(const field *f, const char *unit, char *text, size_t room) {
                        f->kind == FIELD_AUTO ? ", or `\"auto\"`" : "");
 }
 
-bool fields_list(const place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list) {
+bool fields_list(const config_place *at, const config_setting_t *group, const char *name, int most, config_setting_t **list) {
     *list = config_setting_get_member(group, name);
     if (!*list)
         return true;
@@ -367,7 +368,7 @@ bool fields_list(const place *at, const config_setting_t *group, const char *nam
     return true;
 }
 
-bool fields_group(const place *at, const config_setting_t *list, int index, config_setting_t **group) {
+bool fields_group(const config_place *at, const config_setting_t *list, int index, config_setting_t **group) {
     *group = config_setting_get_elem(list, (unsigned)index);
     if (!*group || !config_setting_is_group(*group))
         return fields_fail(at, *group ? *group : list, "must be a group, { ... }");

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const field top_fields[] = {
+static const config_field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
     {"background", FIELD_VECTOR, offsetof(scene, background), RADIOMETRIC},
     {"ambient", FIELD_VECTOR, offsetof(scene, ambient), RADIOMETRIC},
@@ -23,7 +23,7 @@ static const field top_fields[] = {
     {"check", FIELD_SWITCH, offsetof(scene, check), NULL},
 };
 
-static const field output_fields[] = {
+static const config_field output_fields[] = {
     {"width", FIELD_WHOLE, offsetof(scene, width), "[1, 7680]"},
     {"height", FIELD_WHOLE, offsetof(scene, height), "[1, 4320]"},
     {"fps", FIELD_NUMBER, offsetof(scene, fps), "(0, 1000]"},
@@ -31,7 +31,7 @@ static const field output_fields[] = {
 };
 
 enum { SKY_IMAGE, SKY_SCALE, SKY_ROTATE, SKY_LIGHT };
-static const field sky_fields[] = {
+static const config_field sky_fields[] = {
     [SKY_IMAGE] = {"image", FIELD_PATH, offsetof(scene_sky, image), NULL},
     [SKY_SCALE] = {"scale", FIELD_NUMBER, offsetof(scene_sky, scale), "[0, 1e6]"},
     [SKY_ROTATE] = {"rotate", FIELD_NUMBER, offsetof(scene_sky, rotate), "[-360, 360]"},
@@ -44,7 +44,7 @@ typedef struct quality_group {
     bool automatic;
 } quality_group;
 
-static const field quality_fields[] = {
+static const config_field quality_fields[] = {
 #define SETTING(type, member, word, kind, usual, allowed, ...) {word, kind, offsetof(quality_group, q.member), allowed},
 #include "scene/settings.inc"
 #undef SETTING
@@ -94,7 +94,8 @@ static bool read_sky(reader *r, const config_setting_t *root) {
 }
 
 /* Puts the group's settings over *q. *automatic and *kept: as in `scene`; may be NULL. */
-static bool merge_quality(const place *at, const config_setting_t *group, scene_quality *q, bool *automatic, uint32_t *kept) {
+static bool merge_quality(const config_place *at, const config_setting_t *group, scene_quality *q, bool *automatic,
+                          uint32_t *kept) {
     quality_group g = {.q = *q};
     vit_text fault;
     uint32_t seen = 0;
@@ -126,7 +127,7 @@ static bool read_quality(reader *r, const config_setting_t *root) {
 }
 
 vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why) {
-    const place at = {.path = "quality", .folder = "", .why = why};
+    const config_place at = {.path = "quality", .folder = "", .why = why};
     config_t config;
     config_init(&config);
     bool fine = config_read_string(&config, text) == CONFIG_TRUE;
@@ -174,7 +175,7 @@ static bool read_text(config_t *config, const char *path) {
 }
 
 /* missing: an include that is not there, "" if all are. */
-static bool parse(const place *at, const char *missing, config_t *config) {
+static bool parse(const config_place *at, const char *missing, config_t *config) {
     config_set_include_dir(config, at->folder[0] ? at->folder : ".");
     if (read_text(config, at->path))
         return true;

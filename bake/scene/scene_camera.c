@@ -8,7 +8,7 @@ typedef struct camera_head {
 } camera_head;
 
 enum { CAMERA_USE };
-static const field camera_fields[] = {
+static const config_field camera_fields[] = {
     [CAMERA_USE] = {"use", FIELD_TEXT, offsetof(camera_head, use), NULL},
     {"near", FIELD_NUMBER, offsetof(camera_head, near), "(0, 1e6]"},
     {"exposure", FIELD_AUTO, offsetof(camera_head, exposure), "(0, 1e9]"},
@@ -16,7 +16,7 @@ static const field camera_fields[] = {
 };
 
 enum { CAMERA_EYE, CAMERA_TARGET };
-static const field camera_key_fields[] = {
+static const config_field camera_key_fields[] = {
     [CAMERA_EYE] = {"eye", FIELD_VECTOR, offsetof(scene_camera_key, eye), COORDINATE},
     [CAMERA_TARGET] = {"target", FIELD_VECTOR, offsetof(scene_camera_key, target), COORDINATE},
     {"time", FIELD_NUMBER, offsetof(scene_camera_key, time), TIME},

@@ -3,7 +3,7 @@
 #include "scene/scene_reader.h"
 #include <string.h>
 
-static bool read_name(const place *at, const config_setting_t *setting, const char *name, uint64_t *effects) {
+static bool read_name(const config_place *at, const config_setting_t *setting, const char *name, uint64_t *effects) {
     const uint64_t effect = name ? effects_named(name) : 0;
     char names[256] = "";
     if (effect & EFFECTS_NAMED) {

@@ -34,10 +34,10 @@ typedef struct sources {
     int left;      /* includes that may follow: files that include the next one twice each make 2^depth of them */
 } sources;
 
-static bool check_file(const place *at, const char *path, int depth, sources *all);
+static bool check_file(const config_place *at, const char *path, int depth, sources *all);
 
 /* libconfig hands includes to a scanner that ends the whole process on a folder or a device: look first. */
-static bool check_includes(const place *at, const char *path, FILE *file, int depth, sources *all) {
+static bool check_includes(const config_place *at, const char *path, FILE *file, int depth, sources *all) {
     char *line = NULL;
     size_t size = 0;
     bool fine = true;
@@ -66,7 +66,7 @@ static bool check_includes(const place *at, const char *path, FILE *file, int de
 }
 
 /* The file's text against what libconfig would misread. */
-static bool check_text(const place *at, const char *path, FILE *file, size_t size, int depth) {
+static bool check_text(const config_place *at, const char *path, FILE *file, size_t size, int depth) {
     char *text = malloc(size + 1);
     if (!text)
         return fields_fail(at, NULL, "out of memory");
@@ -83,9 +83,9 @@ static bool check_text(const place *at, const char *path, FILE *file, size_t siz
     return fine;
 }
 
-static bool check_file(const place *at, const char *path, int depth, sources *all) {
+static bool check_file(const config_place *at, const char *path, int depth, sources *all) {
     struct stat st;
-    place here = *at;
+    config_place here = *at;
     here.path = path;
     const char *trouble = file_trouble(path);
     if (trouble)
@@ -103,7 +103,7 @@ static bool check_file(const place *at, const char *path, int depth, sources *al
     return fine;
 }
 
-bool scene_files_check(const place *at, inputs *files, char missing[SCENE_PATH]) {
+bool scene_files_check(const config_place *at, inputs *files, char missing[SCENE_PATH]) {
     sources all = {files, missing, MAX_INCLUDES};
     missing[0] = '\0';
     return check_file(at, at->path, 0, &all);

@@ -6,6 +6,6 @@
 #include "scene/scene.h"
 
 /* Notes all of them in `files`. missing: the first include that is not there, for libconfig to report; "" if all are. */
-bool scene_files_check(const place *at, inputs *files, char missing[SCENE_PATH]);
+bool scene_files_check(const config_place *at, inputs *files, char missing[SCENE_PATH]);
 
 #endif

@@ -5,7 +5,7 @@
 enum { MAX_LIGHTS = 64 };
 
 enum { LIGHT_USE, LIGHT_TYPE, LIGHT_INNER, LIGHT_OUTER, LIGHT_RANGE, LIGHT_FALLOFF };
-static const field light_fields[] = {
+static const config_field light_fields[] = {
     [LIGHT_USE] = {"use", FIELD_TEXT, offsetof(scene_light, use), NULL},
     [LIGHT_TYPE] = {"type", FIELD_WORD, offsetof(scene_light, kind), SCENE_LIGHT_KINDS},
     [LIGHT_INNER] = {"inner", FIELD_NUMBER, offsetof(scene_light, inner), "[0, 90]"},
@@ -17,7 +17,7 @@ static const field light_fields[] = {
 };
 
 enum { LIGHT_POSITION, LIGHT_POWER, LIGHT_IRRADIANCE, LIGHT_TARGET };
-static const field light_key_fields[] = {
+static const config_field light_key_fields[] = {
     [LIGHT_POSITION] = {"position", FIELD_VECTOR, offsetof(scene_light_key, position), COORDINATE},
     [LIGHT_POWER] = {"power", FIELD_VECTOR, offsetof(scene_light_key, power), RADIOMETRIC},
     [LIGHT_IRRADIANCE] = {"irradiance", FIELD_VECTOR, offsetof(scene_light_key, power), RADIOMETRIC},
@@ -30,7 +30,8 @@ static bool at_target(const scene_light_key *k) {
 }
 
 /* What the keys of each kind of light hold, and what they must not hold. */
-static bool check_key(const place *at, const config_setting_t *group, const scene_light *light, bool first, uint32_t seen) {
+static bool check_key(const config_place *at, const config_setting_t *group, const scene_light *light, bool first,
+                      uint32_t seen) {
     const bool directional = light->kind == VIT_LIGHT_DIRECTIONAL, aimed = light->kind != VIT_LIGHT_POINT;
     const uint32_t strength = directional ? FIELD_BIT(LIGHT_IRRADIANCE) : FIELD_BIT(LIGHT_POWER);
     if (directional && (seen & FIELD_BIT(LIGHT_POWER)))
@@ -65,7 +66,7 @@ static bool read_light_key(reader *r, scene_light *light, config_setting_t *list
     return true;
 }
 
-static bool check_light(const place *at, const config_setting_t *group, const scene_light *light, uint32_t seen) {
+static bool check_light(const config_place *at, const config_setting_t *group, const scene_light *light, uint32_t seen) {
     const uint32_t cone = FIELD_BIT(LIGHT_INNER) | FIELD_BIT(LIGHT_OUTER);
     if (light->use[0] && (seen & (cone | FIELD_BIT(LIGHT_TYPE))))
         return fields_fail(at, group, "'use' already gives 'type', 'inner' and 'outer'");

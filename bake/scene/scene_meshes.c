@@ -12,7 +12,7 @@ typedef struct mesh_placement {
 } mesh_placement;
 
 enum { MESH_FILE };
-static const field mesh_fields[] = {
+static const config_field mesh_fields[] = {
     [MESH_FILE] = {"file", FIELD_PATH, offsetof(mesh_placement, file), NULL},
     {"scale", FIELD_SCALE, offsetof(mesh_placement, scale), COORDINATE},
     {"rotate", FIELD_VECTOR, offsetof(mesh_placement, rotate), COORDINATE},
@@ -102,7 +102,7 @@ enum {
     MATERIAL_ABSORPTION,
     MATERIAL_AREA_LIGHT
 };
-static const field material_fields[] = {
+static const config_field material_fields[] = {
     [MATERIAL_NAME] = {"name", FIELD_TEXT, offsetof(scene_material, name), NULL},
     [MATERIAL_COLOR] = {"color", FIELD_VECTOR, offsetof(scene_material, color), "[0, 1]"},
     [MATERIAL_TEXTURE] = {"texture", FIELD_PATH, offsetof(scene_material, texture), NULL},
@@ -117,7 +117,7 @@ static const field material_fields[] = {
 };
 
 /* Settings that a material of the kind that it states has no use for. */
-static bool check_material(const place *at, const config_setting_t *group, const scene_material *m, uint32_t seen) {
+static bool check_material(const config_place *at, const config_setting_t *group, const scene_material *m, uint32_t seen) {
     static const struct {
         int setting;
         uint32_t kinds; /* a bit a kind that has it */

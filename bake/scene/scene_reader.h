@@ -16,7 +16,7 @@
 
 typedef struct reader {
     scene *s;
-    place at;
+    config_place at;
 } reader;
 
 /* Names the group that the next errors are about: "light 2" for index 1, "camera" for index -1. */

@@ -65,7 +65,7 @@ static const char *wrong_number(const char *word, size_t length) {
     return NULL;
 }
 
-static bool refuse(const place *at, const char *path, unsigned line, const char *word, size_t length, const char *what) {
+static bool refuse(const config_place *at, const char *path, unsigned line, const char *word, size_t length, const char *what) {
     (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: '%.*s' %s", path, line, length < 40 ? (int)length : 40,
                    word, what);
     return false;
@@ -79,7 +79,7 @@ static bool hangs(const cursor *c) {
     return *p == ')' || *p == ']';
 }
 
-bool scene_text_check(const place *at, const char *path, const char *text, size_t size) {
+bool scene_text_check(const config_place *at, const char *path, const char *text, size_t size) {
     cursor c = {text, text + size, 1};
     if (size >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
         return refuse(at, path, 1, "UTF-16", 6, "is no encoding of a scene file: save it as UTF-8");

@@ -8,6 +8,6 @@
 
 /* Refuses whole numbers that begin with 0, are not decimal or go beyond 32 bits (with L: 64), a comma that nothing follows, and
  * UTF-16. `text` ends with a zero byte at text[size]. False: "path:line: what". */
-bool scene_text_check(const place *at, const char *path, const char *text, size_t size);
+bool scene_text_check(const config_place *at, const char *path, const char *text, size_t size);
 
 #endif

@@ -8,7 +8,7 @@
 enum { SETTING_CHOSEN = 1, SETTING_TOGETHER = 2 };
 
 typedef struct setting_row {
-    field field; /* its offset is that in scene_quality */
+    config_field field; /* its offset is that in scene_quality */
     const char *unit;
     unsigned marks; /* SETTING_* */
     uint64_t needs; /* effects, one of which a scene must have; 0: none */

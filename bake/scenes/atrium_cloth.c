@@ -60,7 +60,7 @@ static void curtain_pair(mesh *m, double middle, const char *material, double ph
 }
 
 void atrium_curtains(mesh *m) {
-    /* From x = -9.6 on; red and green face each other where the lamp passes lowest. */
+    /* From x = -9.6 on; red and green face each other where the area light passes lowest. */
     static const char *const cloth[2][4] = {{"blue_cloth", "red_cloth", "blue_cloth", "green_cloth"},
                                             {"red_cloth", "green_cloth", "red_cloth", "blue_cloth"}};
     for (int side = 0; side < 4; side += 2) {

@@ -17,7 +17,7 @@ static bool is_of(const zones_kept_one *o, const zones_input *in) {
     return o->asked > 0 && !(o->radius < s->radius) && !(o->radius > s->radius) && !(o->flatten < s->flatten) &&
            !(o->flatten > s->flatten) && o->width == s->width && o->height == s->height && o->bounces == s->bounces &&
            o->lights == s->lights && o->zones == in->zones && o->by_light == in->by_light && o->areas == in->areas &&
-           o->guided == (in->guides != NULL) &&
+           o->guided == (in->guiding != NULL) &&
            (s->lights == 0 || memcmp(o->gives, in->gives_photons, s->lights * sizeof *o->gives) == 0);
 }
 
@@ -82,7 +82,7 @@ static void keep(zones_kept *k, const zones_input *in, const cells *c, const zon
     o->zones = in->zones;
     o->by_light = in->by_light;
     o->areas = in->areas;
-    o->guided = in->guides != NULL;
+    o->guided = in->guiding != NULL;
     o->found = *found;
     o->bytes = bytes;
     o->asked = ++k->asked;

@@ -104,9 +104,10 @@ static vit_status count_photons(zones *z, float *flux, vit_text *why) {
         uint32_t count = 0, found = 0;
         for (uint32_t i = 0; i < s->lights; i++)
             if (z->in->gives_photons[i] && frame[i].intensity[0] + frame[i].intensity[1] + frame[i].intensity[2] > 0.0f)
-                lights[count++] = (photons_light){.light = frame[i], .guide = guides_of(z->in->guides, i)};
+                lights[count++] = (photons_light){.light = frame[i], .guide = photon_guiding_of(z->in->guiding, i)};
         if (z->in->area_lights)
-            lights[count++] = (photons_light){.area = z->in->area_lights, .guide = guides_of(z->in->guides, s->lights)};
+            lights[count++] =
+                (photons_light){.area = z->in->area_lights, .guide = photon_guiding_of(z->in->guiding, s->lights)};
         if (z->in->sky)
             lights[count++] = *z->in->sky;
         for (uint32_t i = 0; i < count; i++)

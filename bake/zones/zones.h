@@ -13,16 +13,16 @@ typedef struct zones_input {
     uint32_t triangles;
     const vit_material *materials; /* as in the pack */
     const atlas *atlas;
-    const tracks *tracks;        /* of all frames */
-    const bool *gives_photons;   /* a light */
-    const emitters *area_lights; /* that give photons, or NULL */
-    const photons_light *sky;    /* the same */
-    const guides *guides;        /* of photons, or NULL */
-    const vit_scene *scene;      /* frames, width, height, bounces, radius, flatten, box_pad, ray_offset, lights, effects */
-    bool zones;                  /* accept bits and zones; otherwise every cell accepts zone 0 */
-    bool by_light;               /* unlike lit surfaces are kept apart too */
-    bool areas;                  /* effective areas; otherwise 1 */
-    unsigned threads;            /* 0: all cores; changes no byte */
+    const tracks *tracks;           /* of all frames */
+    const bool *gives_photons;      /* a light */
+    const area_lights *area_lights; /* that give photons, or NULL */
+    const photons_light *sky;       /* the same */
+    const photon_guiding *guiding;  /* of photons, or NULL */
+    const vit_scene *scene;         /* frames, width, height, bounces, radius, flatten, box_pad, ray_offset, lights, effects */
+    bool zones;                     /* accept bits and zones; otherwise every cell accepts zone 0 */
+    bool by_light;                  /* unlike lit surfaces are kept apart too */
+    bool areas;                     /* effective areas; otherwise 1 */
+    unsigned threads;               /* 0: all cores; changes no byte */
     void (*progress)(void *user, double done); /* may be NULL; by the calling thread */
     void *user;
 } zones_input;

@@ -8,7 +8,7 @@
 typedef struct host_call {
     void *buffers[B_COUNT]; /* NULL: not called for */
     uint32_t frame, round, layers, level, run, chunks, max_nodes, max_list, pitch, pass;
-    uint64_t effects; /* vit_limits.effects */
+    uint64_t effects; /* vit_launch.effects */
     vit_view view;
     vit_format format;
 } host_call;

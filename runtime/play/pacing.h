@@ -7,7 +7,7 @@
 #include <time.h>
 
 typedef struct pacing {
-    double fps;            /* frames a second; 0: as fast as possible, nothing is ever late */
+    double fps;            /* frames per second; 0: as fast as possible, nothing is ever late */
     struct timespec start; /* when the first frame was shown */
     uint64_t shown;        /* frames so far */
     uint64_t late;         /* of these, ready only after they were due */

@@ -38,7 +38,7 @@ times report_pass_times(const report *r, uint32_t pass);
 
 /* --report: time a pass, memory a buffer, work of the last frame. */
 void report_print(const report *r, const vit_requirements *need, const vit_statistics *s, uint64_t late, bool paced, FILE *to);
-/* One line: frames, seconds, milliseconds a frame, the device's name; `end` closes it. */
+/* One line: frames, seconds, milliseconds per frame, the device's name; `end` closes it. */
 void report_closing(const report *r, const char *device, const char *end, FILE *to);
 /* One line if a bound dropped anything, else nothing. */
 void report_dropped(const vit_statistics *s, FILE *to);

@@ -36,7 +36,7 @@ enum {
     X(PHOTONS, LAMP, MATT, "", "")                                                                                             \
     X(SMOOTH, LAMP, MATT, "", "")                                                                                              \
     X(TEXTURES, LAMP, MATT ", { name = \"floor\"; texture = \"wood.png\"; }", "", "")                                          \
-    X(GLOSS, LAMP,                                                                                                             \
+    X(SPECULAR, LAMP,                                                                                                          \
       "{ name = \"left\"; color = [0.4, 0.2, 0.1]; specular = [0.4, 0.4, 0.4]; exponent = 40.0; },"                            \
       "{ name = \"right\"; color = [0.1, 0.2, 0.3]; specular = [0.5, 0.5, 0.5]; exponent = 200.0; }",                          \
       "", "")                                                                                                                  \
@@ -131,7 +131,7 @@ static void write_meshes(void) {
     fclose(f);
 }
 
-/* A picture of 4 bytes a texel: bluish above and brown below, every other one a hole. */
+/* A picture of 4 bytes per texel: bluish above and brown below, every other one a hole. */
 static void write_picture_file(const char *name, int width, int height) {
     const unsigned char header[18] = {
         [2] = 2, [12] = (unsigned char)width, [14] = (unsigned char)height, [16] = 32, [17] = 0x28};
@@ -238,7 +238,7 @@ static void run(csv *c, size_t i) {
     const uint64_t dropped = rows[i].effect | (rows[i].effect & lamps ? VIT_BIT(LIGHTS) : 0);
     size_t less_size; /* 2. the pack without it */
     void *less = NULL;
-    TRY(adds_without(&packed.sections, dropped, &less, &less_size, &why));
+    TRY(effect_cost_without(&packed.sections, dropped, &less, &less_size, &why));
     const images_grid grid = {(uint32_t)width(), (uint32_t)height(), EVERY};
     reference truth; /* 3. the path tracer's picture of the first */
     const reference_input in = {.sections = &packed.sections,

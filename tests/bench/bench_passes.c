@@ -1,4 +1,4 @@
-/* Milliseconds a pass with list, buckets and raw buckets; photons a cluster; memory; what containment would save. The three
+/* Milliseconds a pass with list, buckets and raw buckets; photons per cluster; memory; what containment would save. The three
  * estimates take turns frame by frame, so that what slows the machine for a while slows all. Verified first: the pack's own
  * golden hashes. */
 #include "containment.h"
@@ -74,7 +74,7 @@ static void contest_run(contest *c) {
                 player *p = &c->player[e];
                 series_add(&c->frame_ms[e], player_frame(p, f));
                 for (uint32_t i = 0; i < vit_pass_count; i++)
-                    if (vit_pass_called(i, &p->v->limits))
+                    if (vit_pass_called(i, &p->v->launch))
                         series_add(&c->pass_ms[e][i], p->v->pass_ms[i]);
             }
 }

@@ -1,4 +1,4 @@
-/* The path tracer that references are made with: rays a second, and seconds until a picture's standard error is small enough.
+/* The path tracer that references are made with: rays per second, and seconds until a picture's standard error is small enough.
  * Also what one path a pixel costs and how wrong it is: the rival at equal error. On every fourth pixel of 1280 x 720, that is
  * 320 x 180. */
 #include "../pack_sections.h"

@@ -29,7 +29,7 @@ static const whitted_scene scenes[] = {
 /* The columns of Kristek's table: with and without its two improvements, interpolated normals and 4x anti-aliasing. */
 static const struct {
     const char *name, *effects, *antialias;
-    double goal; /* frames a second on two cores */
+    double goal; /* frames per second on two cores */
 } modes[] = {
     {"plain", "none", "1", 60},
     {"smooth normals", "smooth-normals", "1", 60},

@@ -103,7 +103,7 @@ static inline void planes_decode(int32_t *plane, size_t count) {
 static inline void containment_count(player *p, descent *without, descent *with) {
     const vit_scene *s = p->v->pack.scene;
     const vit_statistics stats = player_stats(p);
-    hierarchy h = {.nodes = stats.nodes, .leaves_begin = stats.nodes - stats.clusters, .max_nodes = p->v->limits.max_nodes};
+    hierarchy h = {.nodes = stats.nodes, .leaves_begin = stats.nodes - stats.clusters, .max_nodes = p->v->launch.max_nodes};
     uint32_t *first = player_buffer(p, B_node_first), *count = player_buffer(p, B_node_count);
     int32_t *bounds = player_buffer(p, B_bounds);
     float *plane = bench_array((size_t)h.max_nodes * 12, sizeof *plane);

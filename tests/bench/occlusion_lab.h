@@ -71,7 +71,7 @@ static inline occlusion_lab occlusion_open(player *p, const ray_planes *rays) {
 
 /* Milliseconds on the device. */
 static inline double occlusion_run(occlusion_lab *l, player *p) {
-    const vit_limits *limits = &p->v->limits;
+    const vit_launch *limits = &p->v->launch;
     const size_t local = limits->group, items = p->v->pack.scene->samples / limits->lanes;
     const size_t global = (items + local - 1) / local * local;
     const vit_opencl *d = p->v->state;

@@ -140,7 +140,7 @@ static inline vit_statistics player_stats(player *p) {
 
 /* A copy of a buffer of the frame just rendered; the caller frees it. */
 static inline void *player_buffer(player *p, uint32_t buffer) {
-    const size_t bytes = (size_t)vit_buffer_bytes(buffer, p->v->pack.scene, &p->v->limits);
+    const size_t bytes = (size_t)vit_buffer_bytes(buffer, p->v->pack.scene, &p->v->launch);
     void *out = bench_array(bytes, 1);
     vit_text why;
     if (p->v->device->read(p->v->state, (vit_buffer)buffer, bytes, out, &why) != VIT_OK)

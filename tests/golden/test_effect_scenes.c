@@ -14,7 +14,7 @@
 #include "open_pack.h"
 #include "pack_sections.h"
 
-enum { FRAMES = ADDS_FRAMES };
+enum { FRAMES = EFFECT_COST_FRAMES };
 
 /* A floor, a back wall, the thing: a block on the floor, and a vault under the floor, closed, with a second thing in it. */
 static const char stage[] =
@@ -54,7 +54,7 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(TEXTURES, LAMP, "texture = \"holes.tga\";", "", "")                                                                      \
     X(CUTOUT, LAMP, "texture = \"holes.tga\"; cutoff = 0.5;", "", "")                                                          \
     X(EMISSION, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = false;", "", "")                                               \
-    X(GLOSS, LAMP, "specular = [0.3, 0.3, 0.3]; exponent = 40.0;", "", "")                                                     \
+    X(SPECULAR, LAMP, "specular = [0.3, 0.3, 0.3]; exponent = 40.0;", "", "")                                                  \
     X(MIRROR, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                  \
     X(GLASS, LAMP, "kind = \"glass\"; ior = 1.5; absorption = [0.1, 0.2, 0.3];", "", "")                                       \
     X(CAUSTICS, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                \
@@ -136,7 +136,7 @@ typedef struct played {
     uint64_t hash[FRAMES];
     vit_requirements need;
     vit_statistics stats; /* of the last frame, with work */
-    long long units;      /* work units a frame, mean */
+    long long units;      /* work units per frame, mean */
 } played;
 
 static played play(const void *bytes, size_t size) {
@@ -162,7 +162,7 @@ static played play(const void *bytes, size_t size) {
 /* The pack with the effect in it and nothing for it to act on: data that the loader wants of such a pack are there and do
  * nothing. */
 static played play_idle(const void *bytes, uint64_t effect) {
-    static vit_emitter dark[2 * VIT_PATTERNS];
+    static vit_light_sample dark[2 * VIT_PATTERNS];
     static vit_sky_texel texels[9];
     pack_sections sections = pack_sections_of(bytes);
     vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
@@ -179,7 +179,7 @@ static played play_idle(const void *bytes, uint64_t effect) {
             s.offset[i][0] = 0.25f;
     }
     for (int i = 0; i < 2 * VIT_PATTERNS; i++) {
-        dark[i] = (vit_emitter){.position = {0, 1, 0}, .normal = {0, -1, 0}};
+        dark[i] = (vit_light_sample){.position = {0, 1, 0}, .normal = {0, -1, 0}};
         dark[i].radius2 = effect == VIT_BIT(AREA_LIGHTS) ? 1.0f : 0.0f;
         if (effect == VIT_BIT(AREA_LIGHTS))
             dark[i].position[1] = 4.0f;
@@ -208,7 +208,7 @@ static played play_without(const void *bytes, uint64_t effect) {
     vit_text why = {""};
     void *less = NULL;
     size_t size;
-    if (adds_without(&sections, effect | (effect & lamps ? VIT_BIT(LIGHTS) : 0), &less, &size, &why) != VIT_OK)
+    if (effect_cost_without(&sections, effect | (effect & lamps ? VIT_BIT(LIGHTS) : 0), &less, &size, &why) != VIT_OK)
         fail_msg("%s", why.text);
     const played r = play(less, size);
     free(less);
@@ -241,7 +241,7 @@ static void has_the_tables_of(const char *name, const played *a, const played *b
 static void adds_what_is_explained(scene_lab *l, const char *name, uint64_t effect, const played *with, const played *without) {
     long long bytes = 0, work = 0;
     const int read = sscanf(explanation(l, effect), " %*s %lld %lld", &bytes, &work);
-    if (!(effect & ADDS_MEASURED)) {
+    if (!(effect & EFFECT_COST_MEASURED)) {
         assert_int_equal(read, 0);
         return;
     }
@@ -302,7 +302,7 @@ static void each_is_called_for_by_its_scene_and_changes_it(void **state) {
 static void what_is_never_reached_is_not_called_for(void **state) {
     scene_lab *l = *state;
     static const uint64_t of_surfaces =
-        VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
+        VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
     size_t size;
     bake(l, LAMP, "", "", "", "", false);
     void *bytes = load(l, &size);
@@ -351,7 +351,8 @@ static void effects_can_be_forced_on_and_off(void **state) {
     const played all = play(bytes, size);
     free(bytes);
     assert_memory_equal(all.hash, automatic.hash, sizeof all.hash);
-    assert_true(all.need.effects & VIT_BIT(GLASS) && all.need.effects & VIT_BIT(GLOSS) && all.need.effects & VIT_BIT(TEXTURES));
+    assert_true(all.need.effects & VIT_BIT(GLASS) && all.need.effects & VIT_BIT(SPECULAR) &&
+                all.need.effects & VIT_BIT(TEXTURES));
     assert_true(explained(l, VIT_BIT(GLASS), "forced on: nothing on the path calls for it"));
     bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "effects = [\"glass\"];", "", false);
     bytes = load(l, &size);
@@ -397,11 +398,11 @@ static void a_mirror_that_is_left_out_does_not_shine(void **state) {
     size_t size;
     uint64_t hash[2][FRAMES];
     for (int i = 0; i < 2; i++) {
-        bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", i ? "effects = [\"gloss\"];" : "effects = [];", "",
-             false);
+        bake(l, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", i ? "effects = [\"specular\"];" : "effects = [];",
+             "", false);
         void *bytes = load(l, &size);
         const played p = play(bytes, size);
-        assert_int_equal(p.need.effects & EFFECTS_NAMED, i ? VIT_BIT(GLOSS) : 0);
+        assert_int_equal(p.need.effects & EFFECTS_NAMED, i ? VIT_BIT(SPECULAR) : 0);
         memcpy(hash[i], p.hash, sizeof hash[i]);
         free(bytes);
     }

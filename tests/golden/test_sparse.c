@@ -18,7 +18,7 @@ typedef struct light {
 } light;
 
 static void *buffer(open_pack *p, uint32_t b) {
-    const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->limits);
+    const size_t bytes = (size_t)vit_buffer_bytes(b, p->v->pack.scene, &p->v->launch);
     if (bytes == 0)
         return NULL;
     return read_buffer(p, (vit_buffer)b);

@@ -345,9 +345,9 @@ static void options_choose_effects_as_the_scene_file_does(void **state) {
     assert_non_null(strstr(explained("  antialias "), "forced off"));
     assert_non_null(strstr(r.err, "warning: antialias is left out: quality.antialias is more than 1"));
     assert_null(strstr(r.out, "  film "));
-    tool(&r, TOOL_BAKE " --quiet --explain " SMALL " --effects gloss,mirror --specular-depth 3");
+    tool(&r, TOOL_BAKE " --quiet --explain " SMALL " --effects specular,mirror --specular-depth 3");
     tool_succeeds(&r);
-    assert_non_null(strstr(explained("  gloss "), "forced on"));
+    assert_non_null(strstr(explained("  specular "), "forced on"));
     assert_non_null(strstr(explained("  mirror "), "forced on"));
     assert_non_null(strstr(explained("  glass "), "not called for"));
 }

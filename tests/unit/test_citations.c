@@ -493,8 +493,8 @@ static void right_citations_pass(void **state) {
            "\"The radius\"; x = 1920; Roberts 2018. */ int y = 2001;",
            NULL);
     expect("bake/a.c", "char *s = \"in 1999\"; /* https://x.org/README.md */", NULL);
-    expect("runtime/README.md", "# R\n## Rooms\n(Rooms, below) `zones/*.c` `bake/zones/zones.c` `../bake/zones/zones.c` `build/x.h`\n",
-           NULL);
+    expect("runtime/README.md",
+           "# R\n## Rooms\n(Rooms, below) `zones/*.c` `bake/zones/zones.c` `../bake/zones/zones.c` `build/x.h`\n", NULL);
 }
 
 int main(void) {

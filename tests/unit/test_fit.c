@@ -55,17 +55,17 @@ static void nothing_beats_what_is_on_the_front(void **unused) {
     (void)unused;
     for (uint32_t seed = 0; seed < 200; seed++) {
         make(seed, COUNT);
-        front_mark(&results);
+        pareto_mark(&results);
         for (uint32_t i = 0; i < COUNT; i++) {
-            assert_false(settings[i].front && (settings[i].elsewhere || dominated(i, false)));
-            assert_false(settings[i].front_relmse && (settings[i].elsewhere || dominated(i, true)));
-            for (uint32_t k = 0; k < i && settings[i].front; k++) /* the first of equals alone */
-                assert_false(settings[k].front && settings[k].ms == settings[i].ms &&
+            assert_false(settings[i].pareto && (settings[i].elsewhere || dominated(i, false)));
+            assert_false(settings[i].pareto_relmse && (settings[i].elsewhere || dominated(i, true)));
+            for (uint32_t k = 0; k < i && settings[i].pareto; k++) /* the first of equals alone */
+                assert_false(settings[k].pareto && settings[k].ms == settings[i].ms &&
                              settings[k].total.nmse == settings[i].total.nmse);
             if (!settings[i].elsewhere && !dominated(i, false)) { /* on it, or the like of one before it */
-                bool like = settings[i].front;
+                bool like = settings[i].pareto;
                 for (uint32_t k = 0; k < i; k++)
-                    like = like || (settings[k].front && settings[k].ms == settings[i].ms &&
+                    like = like || (settings[k].pareto && settings[k].ms == settings[i].ms &&
                                     settings[k].total.nmse == settings[i].total.nmse);
                 assert_true(like);
             }

@@ -54,7 +54,7 @@ static void normal_of(const float *p, uint32_t triangle, double n[3]) {
 
 /* All glass triangles still look the way that they did, and are not much smaller. */
 static void draw_in_without_turning(model *m) {
-    assert_true(glass_gap(m, 0.01f));
+    assert_true(glass_inset(m, 0.01f));
     for (uint32_t t = 0; t < TRIANGLES - 2; t++) {
         double a[3], b[3];
         normal_of(before, t, a);
@@ -66,7 +66,7 @@ static void draw_in_without_turning(model *m) {
 static void each_face_of_a_box_moves_in_by_the_gap(void **unused) {
     (void)unused;
     model m = box(2.0);
-    assert_true(glass_gap(&m, 0.01f));
+    assert_true(glass_inset(&m, 0.01f));
     for (int i = 0; i < 3 * (VERTICES - 4); i++)
         assert_true(fabs((double)position[i] - (before[i] > 0.0f ? 2.0 - GAP : GAP)) < 1e-6);
     assert_memory_equal(position + 3 * (VERTICES - 4), before + 3 * (VERTICES - 4), 12 * sizeof *position); /* the floor */
@@ -76,7 +76,7 @@ static void a_closed_body_stays_closed(void **unused) {
     (void)unused;
     model m = box(2.0);
     before[0] = position[0] = -0.0f; /* the same place as 0 */
-    assert_true(glass_gap(&m, 0.01f));
+    assert_true(glass_inset(&m, 0.01f));
     for (int i = 0; i < VERTICES - 4; i++)
         for (int j = 0; j < i; j++) {
             bool together = true;
@@ -109,7 +109,7 @@ static void what_is_no_glass_does_not_move(void **unused) {
     for (size_t i = 0; i < 3; i++) {
         model m = box(2.0);
         materials[0].kind = kinds[i];
-        assert_true(glass_gap(&m, 0.01f));
+        assert_true(glass_inset(&m, 0.01f));
         assert_memory_equal(position, before, sizeof before);
     }
 }

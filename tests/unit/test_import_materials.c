@@ -201,7 +201,7 @@ static void blenders_level_is_no_reflectance(void **state) {
                "newmtl c\nNs 490\nKa 1 1 1\nKd 0.3 0.2 0.1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 3\n", /* metal, no mirror */
                3, "", &m);
     assert_true(near3(m.materials[0].specular, 0.04, 0.04, 0.04) && near3(m.materials[0].albedo, 0.768, 0.768, 0.768));
-    assert_true(fabs((double)m.materials[0].exponent / (double)glossy_exponent(0.3f) - 1.0) < 1e-5);
+    assert_true(fabs((double)m.materials[0].exponent / (double)specular_exponent(0.3f) - 1.0) < 1e-5);
     assert_true(is_matt(&m.materials[1]) && near3(m.materials[1].albedo, 0.8, 0.8, 0.8));
     assert_true(m.materials[2].kind == VIT_MATTE && near3(m.materials[2].specular, 0.3, 0.2, 0.1) &&
                 near3(m.materials[2].albedo, 0, 0, 0));

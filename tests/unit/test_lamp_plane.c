@@ -56,7 +56,7 @@ static float moved(int panel_first, int turned, const float at[3], uint32_t *cou
             panel = quad(&s, LAMP, at, turned ? Z : X, turned ? X : Z);
         else
             (void)quad(&s, WALL, corner, x4, z4);
-    assert_true(lamp_plane(&s.m, below, 2, OFFSET, count));
+    assert_true(area_light_plane(&s.m, below, 2, OFFSET, count));
     for (uint32_t i = 1; i < 4; i++)
         assert_true(s.position[3 * (panel + i) + 1] == s.position[3 * panel + 1]);
     for (uint32_t i = 0; i < 4; i++) /* the ceiling stays */
@@ -71,7 +71,7 @@ static void a_panel_in_its_ceiling_comes_out_of_it(void **state) {
         uint32_t count;
         const float up = moved(way & 1, way >> 1, at, &count);
         assert_int_equal(count, 2);
-        assert_true(fabsf(up + (float)LAMP_PLANE * OFFSET) < 1e-6f);
+        assert_true(fabsf(up + (float)AREA_LIGHT_PLANE * OFFSET) < 1e-6f);
     }
 }
 
@@ -100,11 +100,11 @@ static void the_lid_of_a_closed_body_stays(void **state) {
     (void)quad(&s, LAMP, right, up, Z);
     (void)quad(&s, LAMP, back, X, up);
     was = s;
-    assert_true(lamp_plane(&s.m, &below, 1, OFFSET, &count));
+    assert_true(area_light_plane(&s.m, &below, 1, OFFSET, &count));
     assert_int_equal(count, 0);
     assert_memory_equal(s.position, was.position, sizeof s.position);
     s.material[s.m.triangles - 1] = WALL; /* with a hole in it, it is a sheet */
-    assert_true(lamp_plane(&s.m, &below, 1, OFFSET, &count));
+    assert_true(area_light_plane(&s.m, &below, 1, OFFSET, &count));
     assert_int_equal(count, 2);
 }
 
@@ -117,7 +117,7 @@ static void a_lamp_across_the_plane_stays(void **state) {
     begin(&s);
     (void)quad(&s, WALL, corner, x4, z4);
     (void)quad(&s, LAMP, p, X, up);
-    assert_true(lamp_plane(&s.m, &below, 1, OFFSET, &count));
+    assert_true(area_light_plane(&s.m, &below, 1, OFFSET, &count));
     assert_int_equal(count, 0);
 }
 

@@ -250,7 +250,7 @@ static room *shining_room(void) {
 
 static void so_they_do_with_mirrors_glass_gloss_and_parallel_light(void **state) {
     (void)state;
-    const uint64_t shine = VIT_BIT(SMOOTH) | VIT_BIT(GLOSS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(DIRECTIONAL);
+    const uint64_t shine = VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(DIRECTIONAL);
     room *r = shining_room();
     const likeness ends = compare_room(r, shine), on = compare_room(r, shine | VIT_BIT(CAUSTICS));
     assert_true(on.stored > 1.5 * ends.stored); /* without caustics many paths end at mirrors and glass */

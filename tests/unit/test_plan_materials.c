@@ -1,4 +1,4 @@
-/* What the planner makes of materials, lights and settings: effects, chains, samples a pixel, a directional light's disc and
+/* What the planner makes of materials, lights and settings: effects, chains, samples per pixel, a directional light's disc and
  * its share of the photons. What is hard: an effect too many costs time in every frame, one too few leaves a material black.
  * Strategy: one room with one thing more each, through the steps of the baker that need no device; what is called for is held
  * to be that and nothing else. */
@@ -38,7 +38,7 @@ static void put(const char *path, const char *text) {
 static void plan_scene(const char *text, planned *x) {
     char cfg[2048];
     vit_text why = {{0}};
-    const reach r = {.area = 16, .free_path = 1};
+    const dark_sides r = {.area = 16, .free_path = 1};
     memset(x, 0, sizeof *x);
     put(FOLDER "/m.mtl", "newmtl floor\nKd 0.5 0.5 0.5\nnewmtl other\nKd 0.5 0.5 0.5\n");
     put(FOLDER "/m.obj",
@@ -59,7 +59,7 @@ static void plan_scene(const char *text, planned *x) {
     if (status == VIT_OK)
         status = atlas_pack(&x->m, &x->a, &why);
     if (status == VIT_OK)
-        status = plan_make(&x->s, &x->m, &x->t, &x->a, &x->b, &x->g, &r, &(const sky){0}, 1, &x->p, &why);
+        status = plan_make(&x->s, &x->m, &x->t, &x->a, &x->b, &x->g, &r, &(const environment){0}, 1, &x->p, &why);
     if (status != VIT_OK)
         print_error("%s\n", why.text);
     assert_int_equal(status, VIT_OK);
@@ -94,7 +94,7 @@ static void each_thing_calls_for_its_effect_alone(void **state) {
     (void)state;
     assert_true(added("") == 0);
     assert_true(added("ambient = (0, 0, 0.1);") == VIT_BIT(AMBIENT));
-    assert_true(added(MAKES("specular = (0.1, 0, 0);")) == VIT_BIT(GLOSS));
+    assert_true(added(MAKES("specular = (0.1, 0, 0);")) == VIT_BIT(SPECULAR));
     assert_true(added(MAKES("specular = (0, 0, 0); exponent = 20;")) == 0);
     assert_true(added(MAKES("kind = \"mirror\";")) == (VIT_BIT(MIRROR) | VIT_BIT(CAUSTICS)));
     assert_true(added(MAKES("kind = \"glass\";")) == (VIT_BIT(GLASS) | VIT_BIT(CAUSTICS)));

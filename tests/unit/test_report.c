@@ -119,7 +119,7 @@ static void the_csv_reads_back_to_the_same_numbers(void **state) {
         assert_true(strtod(row[unlimited], NULL) == s->unlimited.relmse);
         assert_true(strtod(row[equal], NULL) == 57.3 * (1.96 / s->total.nmse));
         assert_int_equal(strtoull(row[device], NULL, 10), s->device_bytes);
-        assert_int_equal(atoi(row[front]), s->front);
+        assert_int_equal(atoi(row[front]), s->pareto);
         if (i == 2)
             assert_string_equal(row[psnr], "");
     }
@@ -212,7 +212,7 @@ static void a_page_of_many_noisy_pictures_stays_below_10_megabytes(void **state)
     lab_free(&b->results);
     b->results = lab_results(640, 360);
     for (uint32_t i = 0; i < b->results.count; i++) {
-        b->results.settings[i].front = true;
+        b->results.settings[i].pareto = true;
         uint32_t seed = i;
         for (size_t k = 0; k < (size_t)640 * 360 * 3; k++)
             b->results.settings[i].image[k] = (float)lab_random(&seed);

@@ -88,7 +88,7 @@ static void labels_hide_no_point_and_not_each_other(void **state) {
 
 typedef bool uri_fn(const cost_setting *s, const cost_results *r, const report_pictures *p, FILE *to);
 
-/* Decodes a picture of the report's; the caller frees it. RGB, 3 bytes a pixel. */
+/* Decodes a picture of the report's; the caller frees it. RGB, 3 bytes per pixel. */
 static uint8_t *decode(const cost_results *r, const report_pictures *p, uri_fn *uri) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char *text = NULL;

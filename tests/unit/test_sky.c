@@ -30,8 +30,8 @@ static void fill(picture *p, float value) {
         p->rgb[i] = value;
 }
 
-static sky make(const picture *p, double rotate) {
-    sky s;
+static environment make(const picture *p, double rotate) {
+    environment s;
     vit_text why = {""};
     if (sky_from_texels(p->rgb, WIDE, HIGH, rotate, &s, &why) != VIT_OK)
         fail_msg("%s", why.text);
@@ -53,7 +53,7 @@ static double exact_power(picture *p, int channel) {
 }
 
 /* By an even walk over the sphere. */
-static double looked_up_power(const sky *s, int channel) {
+static double looked_up_power(const environment *s, int channel) {
     enum { STEPS = 1 << 20 };
     double sum = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -86,7 +86,7 @@ static void a_smooth_picture_is_seen_where_it_is(void **state) {
     static const double turns[] = {0, 90, -37.5};
     for (int k = 0; k < 3; k++) {
         const double a = turns[k] * PI / 180;
-        sky s = make(&p, turns[k]);
+        environment s = make(&p, turns[k]);
         double worst = 0;
         for (int i = 0; i < 5000; i++) {
             const double y = 2 * noise(3u * (uint32_t)i) - 1.0, b = 2 * PI * (double)noise(3u * (uint32_t)i + 1),
@@ -107,7 +107,7 @@ static void no_light_is_lost(void **state) {
     picture p;
     for (uint32_t i = 0; i < 3 * WIDE * HIGH; i++)
         p.rgb[i] = noise(i) * (i % 7 == 0 ? 20.0f : 1.0f);
-    sky s = make(&p, 20);
+    environment s = make(&p, 20);
     for (int k = 0; k < 3; k++) {
         close_to(s.irradiance[k], exact_power(&p, k), 1e-5);
         close_to(looked_up_power(&s, k), exact_power(&p, k), 0.005);
@@ -122,12 +122,12 @@ static void a_sun_of_one_texel_keeps_its_power_and_place_anywhere(void **state) 
         picture p;
         fill(&p, 0);
         at(&p, places[i][0], places[i][1])[1] = 1e4f;
-        sky s = make(&p, 0);
+        environment s = make(&p, 0);
         close_to(s.irradiance[1], exact_power(&p, 1), 1e-5);
         close_to(looked_up_power(&s, 1), exact_power(&p, 1), 0.005);
         const vec3 sun = direction(places[i][0], places[i][1]);
         double mean[3] = {0};
-        vit_emitter sets[VIT_PATTERNS * 16];
+        vit_light_sample sets[VIT_PATTERNS * 16];
         sky_sets(&s, 16, sets);
         for (int k = 0; k < VIT_PATTERNS * 16; k++)
             for (int c = 0; c < 3; c++)
@@ -145,7 +145,7 @@ static void edges_of_the_square_do_not_show(void **state) {
     picture p;
     for (uint32_t i = 0; i < 3 * WIDE * HIGH; i++)
         p.rgb[i] = noise(i);
-    sky s = make(&p, 0);
+    environment s = make(&p, 0);
     double worst = 0, range = 0;
     for (int i = 0; i < 2000; i++) {
         const float a = (float)(PI / 2 + PI * (i + 0.5) / 2000), tiny = 1e-5f;
@@ -170,16 +170,16 @@ static void directions_follow_radiance_and_give_back_all_of_it(void **state) {
         for (int x = 0; x < WIDE; x++)
             for (int k = 0; k < 3; k++)
                 at(&p, x, y)[k] = y < HIGH / 2 ? 1.0f + (float)(x / 16) : 0.0f;
-    sky s = make(&p, 0);
+    environment s = make(&p, 0);
     for (uint32_t samples = 1; samples <= 64; samples *= 8) {
-        vit_emitter *sets = calloc(VIT_PATTERNS * samples, sizeof *sets);
+        vit_light_sample *sets = calloc(VIT_PATTERNS * samples, sizeof *sets);
         assert_non_null(sets);
         sky_sets(&s, samples, sets);
         double up = 0;
         for (uint32_t k = 0; k < VIT_PATTERNS; k++) {
             double power = 0;
             for (uint32_t i = 0; i < samples; i++) {
-                const vit_emitter *e = sets + k * samples + i;
+                const vit_light_sample *e = sets + k * samples + i;
                 const double l =
                     sqrt((double)e->position[0] * (double)e->position[0] + (double)e->position[1] * (double)e->position[1] +
                          (double)e->position[2] * (double)e->position[2]);
@@ -199,8 +199,8 @@ static void directions_follow_radiance_and_give_back_all_of_it(void **state) {
 static void a_sky_without_a_picture_is_even(void **state) {
     (void)state;
     static const double radiance[3] = {1, 2, 3};
-    vit_emitter sets[VIT_PATTERNS * 16];
-    sky s;
+    vit_light_sample sets[VIT_PATTERNS * 16];
+    environment s;
     sky_constant(radiance, &s);
     sky_sets(&s, 16, sets);
     for (int k = 0; k < VIT_PATTERNS; k++) {
@@ -247,7 +247,7 @@ static void a_pictures_exposure_is_taken_back(void **state) {
     (void)state;
     static uint8_t bytes[8192];
     vit_text why;
-    sky s;
+    environment s;
     const size_t n = hdr_with("EXPOSURE=4\nVIEW= -vtv\nEXPOSURE= 0.5\nCOLORCORR=1 2 0.25\n", bytes, 4, 2,
                               (const uint8_t[]){128, 128, 128, 132});
     assert_int_equal(sky_load(write_file(bytes, n), 1, 0, &s, &why), VIT_OK);
@@ -262,7 +262,7 @@ static void radiance_and_targa_files_are_read(void **state) {
     (void)state;
     static uint8_t bytes[8192];
     vit_text why;
-    sky s;
+    environment s;
     /* 0.5 * 2^3, 0.25 * 2^3, 0: (c + 0.0) / 256 * 2^(e - 128). */
     size_t n = hdr(bytes, 4, 2, (const uint8_t[]){128, 64, 0, 131});
     assert_int_equal(sky_load(write_file(bytes, n), 0.5, 0, &s, &why), VIT_OK);
@@ -285,7 +285,7 @@ static void radiance_and_targa_files_are_read(void **state) {
 
 static void refused(const char *path, double scale, const char *what) {
     vit_text why = {""};
-    sky s;
+    environment s;
     assert_int_equal(sky_load(path, scale, 0, &s, &why), VIT_BAD_INPUT);
     if (!strstr(why.text, what) || !strstr(why.text, path) || strchr(why.text, '\n'))
         fail_msg("'%s' does not say '%s'", why.text, what);

@@ -1,5 +1,5 @@
 /* Zones and effective areas, in rooms whose answers can be written down: a plane, its edge, a convex and an inner edge, a box
- * on a floor, two rooms on either side of a thin wall. Light and camera reach everything, so that every cell is baked.
+ * on a floor, two rooms on either side of a thin wall. Light and camera dark_sides everything, so that every cell is baked.
  *
  * The kernel is 1 - d^2 / r^2 over a sphere of radius r. In units of its integral over a plane, pi r^2 / 2: the part of a plane
  * on the near side of a line at distance h r is half_plane(h), and half a plane that stands at distance h r across it is (1 -
@@ -46,7 +46,7 @@ static void add_views(fixture *f, float x, float y, float z) {
 /* Everything that is baked before zones. `r` is the fixture's from now on. */
 static void begin(fixture *f, room *r, uint32_t lights) {
     vit_text why = {""};
-    reach found;
+    dark_sides found;
     *f = (fixture){.r = r};
     room_finish(r, lights, 3);
     for (uint32_t i = 0; i < MOST_FRAMES * lights; i++)
@@ -54,7 +54,7 @@ static void begin(fixture *f, room *r, uint32_t lights) {
     for (uint32_t i = 0; i < lights; i++)
         f->gives[i] = true;
     f->t = (tracks){.cameras = f->cameras, .lights = f->lights, .light_count = lights};
-    assert_int_equal(reach_dark_sides(&r->m, &f->t, 1, false, &r->g, 2, NULL, NULL, &found, &why), VIT_OK);
+    assert_int_equal(dark_sides_find(&r->m, &f->t, 1, false, &r->g, 2, NULL, NULL, &found, &why), VIT_OK);
     f->scene = (vit_scene){.width = PIXELS,
                            .height = PIXELS,
                            .bounces = r->in.bounces,

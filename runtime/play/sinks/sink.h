@@ -9,7 +9,7 @@
 typedef struct sink_setup {
     const char *target;     /* the text after "KIND:"; "" if the kind takes none */
     uint32_t width, height; /* pixels */
-    double fps;             /* frames a second */
+    double fps;             /* frames per second */
     size_t frame_bytes;     /* a tightly packed frame in the asked format */
 } sink_setup;
 

@@ -25,10 +25,10 @@ typedef struct bake {
     tracks t;
     bvh b;
     geometry g;
-    reach r;
+    dark_sides r;
     atlas a;
     plan p;
-    vit_emitter *emitters;
+    vit_light_sample *area_lights;
     vit_photon *photons;
     cells c;
     vit_gold gold;
@@ -42,7 +42,7 @@ static void warned(void *user, const char *line) {
 /* Steps in the order of pipeline.c. One frame, so that the light is still and its photons are baked. */
 static vit_status make_shape(bake *k, vit_text *why) {
     vit_status status = tracks_evaluate(&k->s, &k->m, &k->t, why);
-    if (status == VIT_OK && !glass_gap(&k->m, geometry_ray_offset(&k->m)))
+    if (status == VIT_OK && !glass_inset(&k->m, geometry_ray_offset(&k->m)))
         status = VIT_FAILED;
     if (status == VIT_OK)
         status = bvh_build(&k->m, 1, &k->b, why);
@@ -51,10 +51,10 @@ static vit_status make_shape(bake *k, vit_text *why) {
     for (uint32_t i = 0; status == VIT_OK && i < 2 * k->m.triangles; i++)
         k->r.area += (double)side_area(&k->g, i); /* for the radius */
     if (status == VIT_OK && k->whole)
-        status = reach_dark_sides(&k->m, &k->t, 1, false, &k->g, 1, NULL, NULL, &k->r, why);
+        status = dark_sides_find(&k->m, &k->t, 1, false, &k->g, 1, NULL, NULL, &k->r, why);
     if (status == VIT_OK)
         status = atlas_pack(&k->m, &k->a, why);
-    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const sky){0}, 1, &k->p, why)
+    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const environment){0}, 1, &k->p, why)
                             : status;
 }
 
@@ -105,12 +105,12 @@ static vit_status make_zones(bake *k, vit_text *why) {
 }
 
 /* Points on area lights. */
-static void make_emitters(bake *k) {
+static void make_area_lights(bake *k) {
     const uint32_t samples = k->p.scene.area_samples;
-    k->emitters = malloc(((size_t)samples + 1) * VIT_PATTERNS * sizeof *k->emitters);
-    FUZZ_HOLDS(k->emitters);
+    k->area_lights = malloc(((size_t)samples + 1) * VIT_PATTERNS * sizeof *k->area_lights);
+    FUZZ_HOLDS(k->area_lights);
     vit_text why;
-    FUZZ_HOLDS(samples == 0 || emitters_sets(&k->p.area, samples, k->emitters, &why) == VIT_OK);
+    FUZZ_HOLDS(samples == 0 || area_lights_sets(&k->p.area, samples, k->area_lights, &why) == VIT_OK);
 }
 
 /* bounds.c would measure these on a device. */
@@ -133,7 +133,7 @@ static void check_pack(bake *k) {
                                              [VIT_SECTION_ATLS] = k->a.texels,
                                              [VIT_SECTION_SIDE] = k->c.sides,
                                              [VIT_SECTION_CELL] = k->c.cells,
-                                             [VIT_SECTION_EMIT] = k->emitters,
+                                             [VIT_SECTION_EMIT] = k->area_lights,
                                              [VIT_SECTION_PHOT] = k->photons,
                                              [VIT_SECTION_GOLD] = &k->gold}};
     vit_text why = {""};
@@ -150,7 +150,7 @@ static void check_pack(bake *k) {
 }
 
 static void bake_free(bake *k) {
-    free(k->emitters);
+    free(k->area_lights);
     free(k->photons);
     cells_free(&k->c);
     plan_free(&k->p);
@@ -174,7 +174,7 @@ static void bake_model(bake *k) {
     if (status == VIT_OK && k->whole && (k->p.scene.effects & VIT_BIT(PHOTONS)))
         status = make_zones(k, &why);
     if (status == VIT_OK) {
-        make_emitters(k);
+        make_area_lights(k);
         check_pack(k);
     } else
         fuzz_one_line(why.text, sizeof why.text);

@@ -25,7 +25,7 @@ typedef struct fixture {
     uint32_t frames;
     bool sky;
     uint32_t flags[MAX_TRIANGLES]; /* found, by the triangle's number in the model */
-    reach r;
+    dark_sides r;
 } fixture;
 
 static fixture *make(void) {
@@ -110,7 +110,7 @@ static void search(fixture *f, unsigned threads) {
     bvh_free(&f->b);
     geometry_free(&f->g);
     if (bvh_build(&f->m, 1, &f->b, &why) != VIT_OK || geometry_pack(&f->m, &f->b, &f->g, &why) != VIT_OK ||
-        reach_dark_sides(&f->m, &t, f->frames > 0 ? f->frames : 1, f->sky, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
+        dark_sides_find(&f->m, &t, f->frames > 0 ? f->frames : 1, f->sky, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
         fail_msg("%s", why.text);
     for (uint32_t i = 0; i < f->m.triangles; i++)
         f->flags[f->b.order[i]] = f->g.attributes[i].material & (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);
@@ -290,7 +290,7 @@ static void a_spot_light_lights_only_its_cone(void **state) {
     }
 }
 
-/* Rays, not seconds: boxes in a closed box; 112 rays a side would tell the same. */
+/* Rays, not seconds: boxes in a closed box; 112 rays per side would tell the same. */
 static void insides_of_bodies_cost_few_rays(void **state) {
     (void)state;
     fixture *f = make();

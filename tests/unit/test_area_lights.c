@@ -16,7 +16,7 @@ static void light_up(room *r, float lamp, float other) {
     r->materials[LAMP].lights = r->materials[OTHER].lights = 1;
 }
 
-static emitters find(const room *r, unsigned threads) {
+static area_lights find(const room *r, unsigned threads) {
     const photon_scene s = {.triangles = r->g.triangles,
                             .attributes = r->g.attributes,
                             .triangle_count = r->m.triangles,
@@ -25,9 +25,9 @@ static emitters find(const room *r, unsigned threads) {
                             .ray_offset = r->g.ray_offset,
                             .box_pad = r->b.box_pad};
     const vit_camera eye = {.eye = {0.9f, -0.9f, 0.9f}};
-    emitters e;
+    area_lights e;
     vit_text why = {""};
-    if (emitters_find(&s, &eye, 1, threads, &e, &why) != VIT_OK)
+    if (area_lights_find(&s, &eye, 1, threads, &e, &why) != VIT_OK)
         fail_msg("%s", why.text);
     return e;
 }
@@ -37,11 +37,11 @@ static void square(room *r, float y, uint32_t material) {
     room_quad(r, (const float[]){-0.5f, y, -0.5f}, (const float[]){1, 0, 0}, (const float[]){0, 0, 1}, material);
 }
 
-static vit_emitter *sets(const emitters *e, uint32_t samples) {
-    vit_emitter *s = calloc(VIT_PATTERNS * samples, sizeof *s);
+static vit_light_sample *sets(const area_lights *e, uint32_t samples) {
+    vit_light_sample *s = calloc(VIT_PATTERNS * samples, sizeof *s);
     assert_non_null(s);
     vit_text why = {""};
-    assert_int_equal(emitters_sets(e, samples, s, &why), VIT_OK);
+    assert_int_equal(area_lights_sets(e, samples, s, &why), VIT_OK);
     return s;
 }
 
@@ -55,12 +55,12 @@ static void both_sides_of_a_hanging_lamp_shine(void **state) {
     room *r = room_closed(0.5f);
     square(r, 0.5f, LAMP);
     light_up(r, RADIANCE, 0);
-    emitters e = find(r, 2);
+    area_lights e = find(r, 2);
     assert_int_equal(e.count, 4);
     close_to(e.area, 2.0, 1e-6);
     close_to(e.flux[0], 2 * PI * 3.0, 1e-6);
     close_to(e.flux[2], 2 * PI * 0.75, 1e-6);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -72,16 +72,16 @@ static void a_side_that_no_light_reaches_does_not(void **state) {
     for (uint32_t i = 0; i < r->m.triangles; i++)
         if ((r->g.attributes[i].material & VIT_MATERIAL_INDEX) == LAMP)
             r->g.attributes[i].material |= VIT_SIDE_DARK_BACK;
-    emitters e = find(r, 1);
+    area_lights e = find(r, 1);
     assert_int_equal(e.count, 2);
-    vit_emitter *s = sets(&e, 4);
+    vit_light_sample *s = sets(&e, 4);
     for (int i = 0; i < 4 * VIT_PATTERNS; i++) {
         assert_true(fabsf(s[i].normal[1]) > 0.999f);
         assert_true((s[i].normal[1] < 0) == (r->g.triangles[e.side[0] / 2].ny < 0)); /* the front's */
         close_to(0.5 - (double)s[i].position[1], -(double)s[i].normal[1] * (double)r->g.ray_offset, 0.01);
     }
     free(s);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -95,10 +95,10 @@ static void covered_sides_do_not_shine_and_doubled_ones_once(void **state) {
         if (k > 0) /* below, above, in the same place */
             square(r, k == 1 ? 0.5f - 2e-6f : k == 2 ? 0.5f + 2e-6f : 0.5f, LAMP);
         light_up(r, RADIANCE, 0);
-        emitters e = find(r, 2);
+        area_lights e = find(r, 2);
         close_to(e.area, k == 0 ? 1.0 : 2.0, 1e-5);
         close_to(e.flux[0], (k == 0 ? 1 : 2) * PI * 3.0, 1e-5);
-        emitters_free(&e);
+        area_lights_free(&e);
         room_drop(r);
     }
 }
@@ -113,9 +113,9 @@ static void every_set_shines_as_much_as_the_lamps(void **state) {
     for (uint32_t i = 0; i < r->m.triangles; i++) /* the ball is closed */
         if ((r->g.attributes[i].material & VIT_MATERIAL_INDEX) == OTHER)
             r->g.attributes[i].material |= VIT_SIDE_DARK_BACK;
-    emitters e = find(r, 2);
+    area_lights e = find(r, 2);
     for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
-        vit_emitter *s = sets(&e, counts[n]);
+        vit_light_sample *s = sets(&e, counts[n]);
         double all = 0, area = 0;
         for (uint32_t k = 0; k < VIT_PATTERNS; k++) {
             double power = 0;
@@ -132,7 +132,7 @@ static void every_set_shines_as_much_as_the_lamps(void **state) {
             close_to(area, e.area, 0.05);
         free(s);
     }
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -142,8 +142,8 @@ static void sets_are_even_over_a_square_and_so_are_neighbours_together(void **st
     room *r = room_closed(0.5f);
     square(r, 1.0f - 2e-6f, LAMP);
     light_up(r, RADIANCE, 0);
-    emitters e = find(r, 1);
-    vit_emitter *s = sets(&e, 16);
+    area_lights e = find(r, 1);
+    vit_light_sample *s = sets(&e, 16);
     double all[2] = {0, 0}, worst = 0;
     uint32_t squares[8][8] = {{0}};
     for (int k = 0; k < VIT_PATTERNS; k++) {
@@ -164,7 +164,7 @@ static void sets_are_even_over_a_square_and_so_are_neighbours_together(void **st
     for (int i = 0; i < 64; i++) /* 4 points each, 256 in all */
         assert_in_range(squares[i / 8][i % 8], 2, 6);
     free(s);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -175,8 +175,8 @@ static void points_follow_power(void **state) {
     room_quad(r, (const float[]){-0.8f, 0, -0.5f}, (const float[]){0.2f, 0, 0}, (const float[]){0, 0, 1}, LAMP);
     room_quad(r, (const float[]){0.3f, 0, -0.5f}, (const float[]){0.4f, 0, 0}, (const float[]){0, 0, 1}, OTHER);
     light_up(r, 8.0f, 4.0f);
-    emitters e = find(r, 1);
-    vit_emitter *s = sets(&e, 32);
+    area_lights e = find(r, 1);
+    vit_light_sample *s = sets(&e, 32);
     for (int k = 0; k < VIT_PATTERNS; k++) {
         uint32_t left = 0;
         for (int i = 0; i < 32; i++)
@@ -184,7 +184,7 @@ static void points_follow_power(void **state) {
         assert_in_range(left, 15, 17);
     }
     free(s);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -194,8 +194,8 @@ static void a_side_that_lights_a_gap_has_few_points(void **state) {
     room *r = room_closed(0.5f);
     square(r, 0.99f, LAMP);
     light_up(r, RADIANCE, 0);
-    emitters e = find(r, 2);
-    vit_emitter *s = sets(&e, 64);
+    area_lights e = find(r, 2);
+    vit_light_sample *s = sets(&e, 64);
     uint32_t up = 0;
     double power[2] = {0, 0};
     for (int i = 0; i < 64 * VIT_PATTERNS; i++) {
@@ -206,7 +206,7 @@ static void a_side_that_lights_a_gap_has_few_points(void **state) {
     close_to(power[0], 3.0, 1e-5);
     close_to(power[1], 3.0, 1e-5);
     free(s);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -236,10 +236,10 @@ static void add_body(room *r, const body *b, const float middle[3]) {
 }
 
 /* Irradiance at p on a surface facing n of points that shine, in units of radiance. */
-static double irradiance(const vit_emitter *points, uint32_t count, const double p[3], const double n[3]) {
+static double irradiance(const vit_light_sample *points, uint32_t count, const double p[3], const double n[3]) {
     double sum = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const vit_emitter *e = points + i;
+        const vit_light_sample *e = points + i;
         double to[3], d2 = 0, here = 0, there = 0;
         for (int k = 0; k < 3; k++) {
             to[k] = (double)e->position[k] - p[k];
@@ -253,7 +253,7 @@ static double irradiance(const vit_emitter *points, uint32_t count, const double
 }
 
 /* The same of the outsides of all triangles, each cut into many. */
-static double irradiance_of_outside(const emitters *e, const double p[3], const double n[3], const float middle[3]) {
+static double irradiance_of_outside(const area_lights *e, const double p[3], const double n[3], const float middle[3]) {
     enum { CUTS = 24 };
     double sum = 0;
     for (uint32_t i = 0; i < e->count; i++) {
@@ -297,15 +297,15 @@ static void closed_bodies_shine_as_much_as_their_outsides(void **state) {
         room *r = room_closed(0.5f);
         add_body(r, bodies + b, middle);
         light_up(r, RADIANCE, 0);
-        emitters e = find(r, 2);
+        area_lights e = find(r, 2);
         for (uint32_t samples = 16; samples <= 64; samples *= 4) {
-            vit_emitter *s = sets(&e, samples);
+            vit_light_sample *s = sets(&e, samples);
             double should[PLACES], found[PLACES] = {0}, all = 0, all_found = 0;
             for (size_t i = 0; i < PLACES; i++) {
                 double squares = 0;
                 should[i] = irradiance_of_outside(&e, at[i][0], at[i][1], middle);
                 for (uint32_t k = 0; k < VIT_PATTERNS; k++) {
-                    vit_emitter *set = s + k * samples;
+                    vit_light_sample *set = s + k * samples;
                     for (uint32_t j = 0; j < samples; j++) { /* insides, if there are points, are not seen from here */
                         double out = 0;
                         for (int c = 0; c < 3; c++)
@@ -327,7 +327,7 @@ static void closed_bodies_shine_as_much_as_their_outsides(void **state) {
                 assert_true(fabs(found[i] - should[i]) < 0.06 * all); /* 256 points in all */
             free(s);
         }
-        emitters_free(&e);
+        area_lights_free(&e);
         room_drop(r);
     }
 }
@@ -341,9 +341,9 @@ static void insides_of_closed_bodies_have_no_points_but_walls_round_the_camera_d
         add_body(r, &cube, k == 2 ? (const float[]){0.8f, -0.8f, 0.8f} : (const float[]){0, 0, 0});
         r->m.triangles -= k == 1 ? 2 : 0;
         light_up(r, RADIANCE, 0);
-        emitters e = find(r, 2);
+        area_lights e = find(r, 2);
         close_to(e.area, (k == 0 ? 6 : k == 1 ? 10 : 12) * 0.09, 1e-5);
-        emitters_free(&e);
+        area_lights_free(&e);
         room_drop(r);
     }
 }
@@ -355,8 +355,8 @@ static void holes_of_a_lamp_are_black(void **state) {
     room_texture(r, LAMP, 0, 255, 255, 255, 0);
     r->model_materials[LAMP].cutoff = 0.5f;
     light_up(r, RADIANCE, 0);
-    emitters e = find(r, 1);
-    vit_emitter *s = sets(&e, 64);
+    area_lights e = find(r, 1);
+    vit_light_sample *s = sets(&e, 64);
     double power = 0;
     for (int i = 0; i < 64 * VIT_PATTERNS; i++) {
         power += (double)s[i].power[0] / VIT_PATTERNS;
@@ -364,7 +364,7 @@ static void holes_of_a_lamp_are_black(void **state) {
     }
     close_to(power, 3.0, 0.02); /* two sides, a half each */
     free(s);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -375,7 +375,7 @@ static void photons_of_a_lamp_carry_its_flux(void **state) {
     square(r, 0.6f, LAMP);
     r->model_materials[LAMP].albedo[0] = 0.5f;
     light_up(r, RADIANCE, 0);
-    emitters e = find(r, 2);
+    area_lights e = find(r, 2);
     const photons_light l = {.paths = 8192, .area = &e};
     r->in.lights = &l;
     r->in.light_count = 1;
@@ -390,7 +390,7 @@ static void photons_of_a_lamp_carry_its_flux(void **state) {
     close_to(watts[0], e.flux[0] * part, 1e-4);
     close_to(watts[2], e.flux[2] * part, 1e-4);
     free(p);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 
@@ -400,12 +400,12 @@ static void one_thread_and_three_find_the_same(void **state) {
     room_ball(r, (const float[]){0.3f, -0.4f, 0.1f}, 0.2f, LAMP);
     square(r, 0.9f, OTHER);
     light_up(r, RADIANCE, 1);
-    emitters a = find(r, 1), b = find(r, 3);
+    area_lights a = find(r, 1), b = find(r, 3);
     assert_int_equal(a.count, b.count);
     assert_memory_equal(a.side, b.side, a.count * sizeof *a.side);
     assert_memory_equal(a.sum, b.sum, a.count * sizeof *a.sum);
-    emitters_free(&a);
-    emitters_free(&b);
+    area_lights_free(&a);
+    area_lights_free(&b);
     room_drop(r);
 }
 
@@ -415,10 +415,10 @@ static void without_lamps_there_is_nothing(void **state) {
     square(r, 0.5f, LAMP);
     light_up(r, RADIANCE, 0);
     r->materials[LAMP].lights = 0; /* seen, but lighting nothing */
-    emitters e = find(r, 1);
+    area_lights e = find(r, 1);
     assert_int_equal(e.count, 0);
     assert_true(e.flux[0] == 0.0);
-    emitters_free(&e);
+    area_lights_free(&e);
     room_drop(r);
 }
 

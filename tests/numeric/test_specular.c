@@ -1,4 +1,4 @@
-/* Mirrors, glass and the Phong lobe (kernels/shine.clh) at every width, against Fresnel, Snell and Phong in double.
+/* Mirrors, glass and the Phong lobe (kernels/specular.clh) at every width, against Fresnel, Snell and Phong in double.
  *
  * What can go wrong: light is made (reflected and refracted parts are more than 1, a lobe reflects more than it is given),
  * lost, or goes where it does not; at the critical angle, at normal and at grazing incidence most easily. Fresnel's part has a
@@ -40,7 +40,7 @@ typedef struct bench {
 /* The kernel at every width; they agree to the bit. */
 static void run(bench *b, const char *kernel, unsigned planes) {
     for (unsigned w = 0; w < LAB_WIDTHS; w++) {
-        lab l = lab_open(lab_lanes[w], VIT_BIT(GLASS) | VIT_BIT(GLOSS), kernels);
+        lab l = lab_open(lab_lanes[w], VIT_BIT(GLASS) | VIT_BIT(SPECULAR), kernels);
         const cl_mem a[] = {lab_buffer(&l, b->in, IN * (size_t)COUNT * 4), lab_buffer(&l, NULL, OUT * (size_t)COUNT * 4)};
         lab_run(&l, kernel, COUNT / lab_lanes[w], a, 2);
         lab_read(&l, a[1], b->out[w], planes * (size_t)COUNT * 4);

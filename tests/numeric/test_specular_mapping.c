@@ -43,7 +43,7 @@ static double gltf(double base, double metallic, double roughness, const double 
 static model_material mapped(double base, double metallic, double roughness) {
     const float c[3] = {(float)base, (float)base, (float)base};
     model_material m = {0};
-    glossy_from_metallic(&m, c, c, (float)metallic, (float)roughness);
+    specular_from_metallic(&m, c, c, (float)metallic, (float)roughness);
     assert_int_equal(m.kind, VIT_MATTE);
     return m;
 }
@@ -129,20 +129,20 @@ static void smooth_metals_are_mirrors_and_wide_lobes_matt(void **state) {
     static const float base[3] = {0.9f, 0.7f, 0.5f};
     model_material m = {0};
     (void)state;
-    glossy_from_metallic(&m, base, base, 1.0f, 0.1f);
+    specular_from_metallic(&m, base, base, 1.0f, 0.1f);
     assert_true(m.kind == VIT_MIRROR && m.specular[1] == 0.7f && m.exponent == 1.0f);
-    glossy_from_metallic(&m, base, base, 1.0f, 0.11f);
+    specular_from_metallic(&m, base, base, 1.0f, 0.11f);
     assert_true(m.kind == VIT_MATTE && m.specular[1] == 0.7f && m.albedo[1] == 0.0f && m.exponent > 3000.0f);
-    glossy_from_metallic(&m, base, base, 0.89f, 0.1f);
+    specular_from_metallic(&m, base, base, 0.89f, 0.1f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] < 0.9f && m.albedo[0] > 0.0f && m.albedo[0] + m.specular[0] <= 1.0f);
-    glossy_from_metallic(&m, base, base, 1.0f, 0.7f);
+    specular_from_metallic(&m, base, base, 1.0f, 0.7f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] == 0.0f && m.albedo[0] == 0.9f && m.exponent == 1.0f);
     m.emission[1] = 1.0f; /* what emits is seen: no mirror */
-    glossy_from_metallic(&m, base, base, 1.0f, 0.0f);
+    specular_from_metallic(&m, base, base, 1.0f, 0.0f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] == 0.9f && m.exponent == VIT_MAX_EXPONENT);
     float last = VIT_MAX_EXPONENT;
     for (int i = 0; i <= 1000; i++) {
-        const float e = glossy_exponent((float)i / 1000.0f);
+        const float e = specular_exponent((float)i / 1000.0f);
         assert_true(e <= last && (e == 0.0f || e >= 1.0f));
         last = e;
     }

@@ -1,4 +1,4 @@
-/* Meshes of any number of triangles for bench_reach.c: what reach has most to do with.
+/* Meshes of any number of triangles for bench_dark_sides.c: what reach has most to do with.
  *   parts: a closed housing full of small closed parts, a fifth of them outside: nearly all sides are dark, as in a CAD model
  *   balls: finely tessellated balls on the floor of a room, a light in the room: fronts are lit, backs are dark */
 #ifndef VIT_BENCH_REACH_MODELS_H
@@ -8,14 +8,14 @@
 #include "import/model.h"
 #include "motion/tracks.h"
 
-#define REACH_FRAMES 24u
+#define DARK_SIDES_FRAMES 24u
 #define REACH_FACETS 24u /* of a part: a bolt of 4 * REACH_FACETS triangles */
 #define REACH_BALLS 64u
 
 typedef struct reach_model {
     model m;
     model_material material;
-    vit_light lights[REACH_FRAMES];
+    vit_light lights[DARK_SIDES_FRAMES];
     tracks t;
 } reach_model;
 
@@ -139,8 +139,8 @@ static inline void reach_model_make(reach_model *r, bool balls, uint32_t triangl
         reach_fill_balls(&r->m, triangles);
     else
         reach_fill_parts(&r->m, triangles / (4 * REACH_FACETS) + 1);
-    for (uint32_t i = 0; i < REACH_FRAMES; i++) {
-        const double angle = 6.283185307179586 * i / REACH_FRAMES;
+    for (uint32_t i = 0; i < DARK_SIDES_FRAMES; i++) {
+        const double angle = 6.283185307179586 * i / DARK_SIDES_FRAMES;
         const float across = (float)cos(angle), along = (float)sin(angle);
         r->lights[i] = (vit_light){.intensity = {1.0f, 1.0f, 1.0f}, .cos_outer = -1.0f};
         const float balls_at[3] = {3.0f * across, 4.0f, 3.0f * along},

@@ -1,8 +1,8 @@
 /* Sides that light can reach: seconds of CPU, all threads, and rays over the number of triangles, the exponent that fits the
- * seconds (1 is linear) and the memory of the process at its most. Only reach_dark_sides() is timed. Argument: the most
+ * seconds (1 is linear) and the memory of the process at its most. Only dark_sides_find() is timed. Argument: the most
  * triangles, default 5 million. */
 #include "dark_sides/dark_sides.h"
-#include "reach_models.h"
+#include "dark_side_models.h"
 #include <sys/resource.h>
 
 #define LEAST 10000u
@@ -35,17 +35,17 @@ static double cpu_seconds(void) {
 }
 
 /* Its `seconds` become those of CPU: other processes do not count. */
-static reach measure(bool balls, uint32_t triangles, uint32_t *made) {
+static dark_sides measure(bool balls, uint32_t triangles, uint32_t *made) {
     reach_model r;
     bvh b;
     geometry g;
-    reach found;
+    dark_sides found;
     vit_text why = {""};
     reach_model_make(&r, balls, triangles);
     if (bvh_build(&r.m, 0, &b, &why) != VIT_OK || geometry_pack(&r.m, &b, &g, &why) != VIT_OK)
         bench_fail("%s", why.text);
     const double start = cpu_seconds();
-    if (reach_dark_sides(&r.m, &r.t, REACH_FRAMES, false, &g, 0, NULL, NULL, &found, &why) != VIT_OK)
+    if (dark_sides_find(&r.m, &r.t, DARK_SIDES_FRAMES, false, &g, 0, NULL, NULL, &found, &why) != VIT_OK)
         bench_fail("%s", why.text);
     found.seconds = cpu_seconds() - start;
     *made = r.m.triangles;
@@ -65,7 +65,7 @@ static void measure_all(csv *c, bool balls, uint32_t most) {
          want = want < most && 3 * (uint64_t)want > most ? most : 3 * want) {
         uint32_t made;
         char size[16];
-        const reach found = measure(balls, want, &made);
+        const dark_sides found = measure(balls, want, &made);
         const series s = series_exact(found.seconds), rays = series_exact((double)found.rays / (2.0 * made));
         (void)snprintf(size, sizeof size, "%u", made);
         csv_row(c, name, size, "seconds", &s, "s");

@@ -35,7 +35,7 @@ typedef struct guided {
     vit_camera cameras[FRAMES];
     vit_light lights[FRAMES];
     bool still, gives;
-    guides found;
+    photon_guiding found;
 } guided;
 
 static photons_light sun(void) {
@@ -60,22 +60,22 @@ static void find(guided *g, const photons_light *l, unsigned threads) {
                                      .right = {0.12f, 0.0f, -0.12f},
                                      .down = {-0.02f, -0.1f, -0.02f}};
     }
-    const guides_input in = {.scene = {.triangles = g->r->g.triangles,
-                                       .attributes = g->r->g.attributes,
-                                       .triangle_count = g->r->m.triangles,
-                                       .materials = g->r->materials,
-                                       .atlas = &g->r->a,
-                                       .ray_offset = g->r->g.ray_offset,
-                                       .box_pad = g->r->b.box_pad},
-                             .tracks = &g->t,
-                             .frames = FRAMES,
-                             .width = 16,
-                             .height = 9,
-                             .bounces = HITS,
-                             .gives_photons = &g->gives,
-                             .sky = l->sky ? l : NULL,
-                             .threads = threads};
-    if (guides_find(&in, &g->found, &why) != VIT_OK)
+    const photon_guiding_input in = {.scene = {.triangles = g->r->g.triangles,
+                                               .attributes = g->r->g.attributes,
+                                               .triangle_count = g->r->m.triangles,
+                                               .materials = g->r->materials,
+                                               .atlas = &g->r->a,
+                                               .ray_offset = g->r->g.ray_offset,
+                                               .box_pad = g->r->b.box_pad},
+                                     .tracks = &g->t,
+                                     .frames = FRAMES,
+                                     .width = 16,
+                                     .height = 9,
+                                     .bounces = HITS,
+                                     .gives_photons = &g->gives,
+                                     .sky = l->sky ? l : NULL,
+                                     .threads = threads};
+    if (photon_guiding_find(&in, &g->found, &why) != VIT_OK)
         fail_msg("%s", why.text);
 }
 
@@ -102,7 +102,7 @@ static void holds(photons_light l, const double flux[3], uint32_t source) {
     find(&g, &l, 1);
     assert_true(g.found.worth[source] > 0.999);
     (void)share_inside(&g, l, flux[0], 0, &even);
-    l.guide = guides_of(&g.found, source);
+    l.guide = photon_guiding_of(&g.found, source);
     l.around = g.found.around;
     assert_non_null(l.guide);
     for (int c = 0; c < 3; c++) {
@@ -112,7 +112,7 @@ static void holds(photons_light l, const double flux[3], uint32_t source) {
     }
     if (inside < PATHS / 4 || even > inside / 50)
         fail_msg("%u photons inside, %u of even paths", inside, even);
-    guides_free(&g.found);
+    photon_guiding_free(&g.found);
     room_drop(g.r);
 }
 
@@ -132,7 +132,7 @@ static void so_does_a_lamps_from_outside(void **state) {
 
 static void so_does_the_skys(void **state) {
     (void)state;
-    sky s;
+    environment s;
     sky_constant((const double[]){1.0, 2.0, 3.0}, &s);
     const photons_light l = {.light = {.position = {0, 0, 0}, .spot_scale = 28.4f}, .paths = PATHS, .sky = &s};
     const double flux = PI * (double)HOLE * (double)HOLE;
@@ -144,23 +144,23 @@ static void so_does_the_skys(void **state) {
 static void paths_are_weighed_by_their_density(void **state) {
     (void)state;
     enum { SAMPLES = 5000, POINTS = 200000 };
-    static guide_sample samples[SAMPLES];
-    guide g;
+    static guiding_tree_sample samples[SAMPLES];
+    guiding_tree g;
     for (uint32_t i = 0; i < SAMPLES; i++) /* in the corner of a box of 1/16 */
         for (int k = 0; k < 3; k++) {
             samples[i].at[k] = unit_float(pcg(3 * i + (uint32_t)k)) * 0.0625f;
             samples[i].weight = 1.0f + unit_float(pcg(i));
         }
-    assert_true(guide_build(samples, SAMPLES, 3, &g));
+    assert_true(guiding_tree_build(samples, SAMPLES, 3, &g));
     double corner = 0, half = 0, all = 0;
     uint32_t in_corner = 0;
     for (uint32_t i = 0; i < POINTS; i++) {
-        float at[GUIDE_DIMENSIONS];
-        const double part = 1.0 / ((double)guide_point(&g, POINTS, i, i, at) * POINTS);
+        float at[GUIDING_DIMENSIONS];
+        const double part = 1.0 / ((double)guiding_tree_point(&g, POINTS, i, i, at) * POINTS);
         const bool in = at[0] < 0.0625f && at[1] < 0.0625f && at[2] < 0.0625f;
-        for (int k = 0; k < GUIDE_DIMENSIONS; k++)
+        for (int k = 0; k < GUIDING_DIMENSIONS; k++)
             assert_true(at[k] >= 0.0f && at[k] < 1.0f);
-        assert_true(part * POINTS <= 1.0 / (double)GUIDE_EVENLY * 1.0001);
+        assert_true(part * POINTS <= 1.0 / (double)GUIDING_EVENLY * 1.0001);
         corner += in ? part : 0;
         half += at[1] > 0.5f ? part : 0;
         all += part;
@@ -168,7 +168,7 @@ static void paths_are_weighed_by_their_density(void **state) {
     }
     assert_true(in_corner > POINTS * 0.78 && g.gain > 2000);
     assert_true(fabs(corner * 4096 - 1) < 0.01 && fabs(half - 0.5) < 0.01 && fabs(all - 1) < 0.01);
-    guide_free(&g);
+    guiding_tree_free(&g);
 }
 
 static void guides_are_the_same_with_any_number_of_threads(void **state) {
@@ -182,8 +182,8 @@ static void guides_are_the_same_with_any_number_of_threads(void **state) {
     assert_memory_equal(a.found.guide[0].nodes, b.found.guide[0].nodes,
                         a.found.guide[0].count * sizeof *a.found.guide[0].nodes);
     assert_memory_equal(a.found.worth, b.found.worth, a.found.count * sizeof *a.found.worth);
-    guides_free(&a.found);
-    guides_free(&b.found);
+    photon_guiding_free(&a.found);
+    photon_guiding_free(&b.found);
     room_drop(a.r);
 }
 
