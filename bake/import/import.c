@@ -73,7 +73,7 @@ static void multiply(const double a[12], const struct aiMatrix4x4 *b, double out
 
 static bool place_mesh(importer *im, unsigned index, const double world[12]) {
     const uint32_t before = im->m->triangles;
-    const bool fine = import_mesh(im, im->ai->mMeshes[index], world);
+    const bool fine = import_mesh(im, index, world);
     im->placed[index].places++;
     im->placed[index].triangles += im->m->triangles - before;
     return fine;
@@ -219,6 +219,7 @@ bool import_file(importer *im, const scene_mesh *mesh) {
     if (!im->ai)
         return fail_by_assimp(im);
     const bool fine = has_materials(im) && import_mend_tree(im) && import_triangulate(im) && add_scene(im, mesh);
+    import_free_cuts(im);
     if (im->ai && !im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
         aiReleaseImport(im->ai);
     return fine;

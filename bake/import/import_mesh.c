@@ -8,6 +8,7 @@
 
 typedef struct instance {
     const struct aiMesh *mesh;
+    const polygon_cut *cut;
     const double *world; /* 3 x 4 */
     bool mirrored;       /* its determinant is negative */
     float *position;     /* 3 a vertex of the mesh, in the world */
@@ -64,39 +65,44 @@ static bool is_far(importer *im, const instance *in, const uint32_t v[3]) {
     return far;
 }
 
-/* Keeps the triangles that have an area, counts the others. */
+/* Keeps the triangle if it has an area, counts it otherwise. */
+static void sift_triangle(importer *im, instance *in, const unsigned *corner) {
+    const struct aiMesh *mesh = in->mesh;
+    const uint32_t v[3] = {corner[0], corner[in->mirrored ? 2 : 1], corner[in->mirrored ? 1 : 2]};
+    if (v[0] >= mesh->mNumVertices || v[1] >= mesh->mNumVertices || v[2] >= mesh->mNumVertices) {
+        im->bad_index++;
+        return;
+    }
+    if (is_far(im, in, v)) {
+        im->too_far++;
+        return;
+    }
+    switch (triangle_shape(in->position + 3 * (size_t)v[0], in->position + 3 * (size_t)v[1], in->position + 3 * (size_t)v[2])) {
+    case SHAPE_NOT_FINITE:
+        im->not_finite++;
+        break;
+    case SHAPE_FLAT:
+        im->m->degenerate++;
+        break;
+    case SHAPE_GOOD:
+        memcpy(in->corner + 3 * in->triangles++, v, sizeof v);
+        break;
+    }
+}
+
 static void sift_faces(importer *im, instance *in) {
     const struct aiMesh *mesh = in->mesh;
     for (size_t i = 0; i < mesh->mNumFaces; i++) {
         const struct aiFace *face = &mesh->mFaces[i];
         if (face->mNumIndices == 0) /* emptied by import_triangulate() */
             continue;
-        if (face->mNumIndices != 3) {
+        if (face->mNumIndices == 3)
+            sift_triangle(im, in, face->mIndices);
+        else
             im->m->not_triangles++;
-            continue;
-        }
-        const uint32_t v[3] = {face->mIndices[0], face->mIndices[in->mirrored ? 2 : 1], face->mIndices[in->mirrored ? 1 : 2]};
-        if (v[0] >= mesh->mNumVertices || v[1] >= mesh->mNumVertices || v[2] >= mesh->mNumVertices) {
-            im->bad_index++;
-            continue;
-        }
-        if (is_far(im, in, v)) {
-            im->too_far++;
-            continue;
-        }
-        switch (
-            triangle_shape(in->position + 3 * (size_t)v[0], in->position + 3 * (size_t)v[1], in->position + 3 * (size_t)v[2])) {
-        case SHAPE_NOT_FINITE:
-            im->not_finite++;
-            break;
-        case SHAPE_FLAT:
-            im->m->degenerate++;
-            break;
-        case SHAPE_GOOD:
-            memcpy(in->corner + 3 * in->triangles++, v, sizeof v);
-            break;
-        }
     }
+    for (size_t i = 0; i < in->cut->triangles; i++)
+        sift_triangle(im, in, in->cut->corner + 3 * i);
 }
 
 /* Normal of vertex `v` of the mesh in the world: by the cofactors of the matrix, which is its inverse transpose up to a
@@ -258,17 +264,19 @@ static void say_rigid(importer *im, const struct aiMesh *mesh) {
     im->warned_bones |= mesh->mNumBones > 0;
 }
 
-bool import_mesh(importer *im, const struct aiMesh *mesh, const double world[12]) {
+bool import_mesh(importer *im, unsigned index, const double world[12]) {
+    const struct aiMesh *mesh = im->ai->mMeshes[index];
+    const polygon_cut *cut = &im->cuts[index];
     if (!mesh->mVertices || !mesh->mFaces || !mesh->mNumVertices || !mesh->mNumFaces)
         return true;
     if (mesh->mMaterialIndex >= im->ai->mNumMaterials)
         return import_fail(im, "mesh '%.100s' has material %u of %u", mesh->mName.data, mesh->mMaterialIndex,
                            im->ai->mNumMaterials);
     say_rigid(im, mesh);
-    instance in = {.mesh = mesh, .world = world, .mirrored = determinant(world) < 0.0};
+    instance in = {.mesh = mesh, .cut = cut, .world = world, .mirrored = determinant(world) < 0.0};
     in.position = calloc(mesh->mNumVertices, 3 * sizeof *in.position);
     in.vertex = calloc(mesh->mNumVertices, sizeof *in.vertex);
-    in.corner = calloc(mesh->mNumFaces, 3 * sizeof *in.corner);
+    in.corner = calloc(mesh->mNumFaces + cut->triangles, 3 * sizeof *in.corner);
     const bool fine = in.position && in.vertex && in.corner ? add_instance(im, &in) : import_fail(im, "out of memory");
     free(in.position);
     free(in.vertex);

@@ -13,8 +13,15 @@
 typedef enum import_shown { SHOWN_AS_SAID, SHOWN_INVISIBLE, SHOWN_HOLES } import_shown; /* none; those of alpha 0; all */
 
 enum { IMPORT_DEPTH = 256, IMPORT_EDGE = 16384 }; /* levels of the node tree; pixels of an image's edge */
+enum { IMPORT_CORNERS = 1024 };                   /* of a polygon: cutting ears takes the square of them and more */
 #define IMPORT_TEXELS ((uint64_t)1 << 30)         /* of all images together: 4 GiB decoded */
 #define IMPORT_FAR 1e9f                           /* m: beyond, areas do not fit a float */
+
+/* What a mesh's polygons of five corners and more became: 3 vertices of the mesh a triangle. */
+typedef struct polygon_cut {
+    uint32_t *corner;
+    size_t triangles;
+} polygon_cut;
 
 /* One mesh file being read. */
 typedef struct importer {
@@ -46,7 +53,9 @@ typedef struct importer {
     char no_materials[SCENE_NAME]; /* material file that is not there; "" if all are */
     uint32_t file_index;           /* in scene.meshes */
     model_mesh *placed;            /* a mesh of the file each: places and triangles so far */
-    unsigned lost_nodes;           /* that were NULL in Assimp's tree */
+    polygon_cut *cuts;             /* a mesh of the file each */
+    unsigned cut_count;
+    unsigned lost_nodes; /* that were NULL in Assimp's tree */
 
     vit_status status;                /* of what fails: VIT_BAD_INPUT, unless it is not the file's fault */
     wire *to_parent;                  /* in the child; else NULL */
@@ -107,8 +116,12 @@ bool import_mend_tree(importer *im);
 /* A mesh that no node leads to, in a tree that had holes: its node was lost. */
 bool import_is_stray(const importer *im, unsigned mesh);
 
-/* import_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted. */
+/* import_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted, those
+ * of five and more emptied, too, and their triangles kept in im->cuts. */
 bool import_triangulate(importer *im);
+void import_free_cuts(importer *im);
+/* import_cut.c: does so with a mesh; its indices are in range. */
+bool import_cut(importer *im, const struct aiMesh *mesh, polygon_cut *out);
 
 /* import_material.c: the use of material `ai_index` with vertex colour `tint`; false: out of memory.
  * The pointer is good until the next call. */
@@ -157,8 +170,8 @@ bool import_is_glass_mtl(const struct aiMaterial *ai);
  * position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of memory. */
 bool import_normals(const float *position, const uint32_t *corner, size_t triangles, float *normal);
 
-/* import_mesh.c: appends the triangles of `mesh`, placed by `world` (3 x 4), to the model. */
-bool import_mesh(importer *im, const struct aiMesh *mesh, const double world[12]);
+/* import_mesh.c: appends the triangles of mesh `index`, placed by `world` (3 x 4), to the model. */
+bool import_mesh(importer *im, unsigned index, const double world[12]);
 /* Makes room in the model for so many more vertices and triangles. */
 bool import_make_room(importer *im, size_t vertices, size_t triangles);
 

@@ -811,6 +811,68 @@ static void a_face_without_corners_beside_a_triangle_is_left_out(void **state) {
     model_free(&m);
 }
 
+/* In a tilted plane, from either side: n - 2 triangles, which cover the area of the outline once. */
+static void assert_cut(double (*outline)[2], size_t n, bool backwards) {
+    char text[8192];
+    size_t used = 0;
+    double area = 0.0, sum = 0.0, sides[3] = {0.0, 0.0, 0.0};
+    model m;
+    for (size_t i = 0; i < n; i++) {
+        const double *p = outline[i], *q = outline[(i + 1) % n];
+        used += (size_t)snprintf(text + used, sizeof text - used, "v %.9g %.9g %.9g\n", p[0], 0.6 * p[1], 0.8 * p[1]);
+        area += (p[0] * q[1] - p[1] * q[0]) / 2.0;
+    }
+    used += (size_t)snprintf(text + used, sizeof text - used, "f");
+    for (size_t i = 0; i < n; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, " %zu", backwards ? n - i : i + 1);
+    assert_true(area > 0.0 && used < sizeof text - 2);
+    put(FILE_OF("polygon.obj"), strcat(text, "\n"));
+    import_good(FILE_OF("polygon.obj"), &m);
+    check_promises(&m);
+    assert_int_equal(m.triangles + m.degenerate, n - 2);
+    for (size_t t = 0; t < m.triangles; t++) {
+        const float *a = m.position + 3 * (size_t)m.index[3 * t], *b = m.position + 3 * (size_t)m.index[3 * t + 1];
+        const float *c = m.position + 3 * (size_t)m.index[3 * t + 2];
+        double square = 0.0;
+        for (int k = 0; k < 3; k++) {
+            const int u = (k + 1) % 3, v = (k + 2) % 3;
+            const double twice = (double)(b[u] - a[u]) * (double)(c[v] - a[v]) - (double)(b[v] - a[v]) * (double)(c[u] - a[u]);
+            square += twice * twice;
+            sides[k] += twice / 2.0;
+        }
+        sum += sqrt(square) / 2.0;
+    }
+    assert_true(fabs(sum - area) < 1e-5 * area);
+    assert_true(fabs((0.6 * sides[2] - 0.8 * sides[1]) - (backwards ? -area : area)) < 1e-5 * area);
+    model_free(&m);
+}
+
+/* Assimp 5.3 leaves out parts of such polygons. */
+static void polygons_that_are_not_convex_are_cut_whole(void **state) {
+    (void)state;
+    enum { POINTS = 34, TEETH = 16 };
+    double ring[][2] = {{0, 0}, {3, 0}, {3, 3}, {0, 3}, {0, 0}, {1, 1}, {1, 2}, {2, 2}, {2, 1}, {1, 1}};
+    double house[][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {1, 1.5}, {0, 1}};
+    double star[POINTS][2], comb[4 * TEETH][2];
+    for (int i = 0; i < POINTS; i++) {
+        const double angle = 2.0 * 3.14159265358979 * i / POINTS, r = i % 2 ? 0.3 : 1.0;
+        star[i][0] = r * cos(angle);
+        star[i][1] = r * sin(angle);
+    }
+    for (int i = 0; i < 2 * TEETH; i++) { /* teeth up in a wave and back along it, so that no line across sees it all */
+        const double x = i, y = 4.0 * sin(0.4 * i) + (i % 2 ? 3.0 : 0.0);
+        comb[i][0] = comb[4 * TEETH - 1 - i][0] = x;
+        comb[i][1] = y;
+        comb[4 * TEETH - 1 - i][1] = y + 1.0;
+    }
+    for (int side = 0; side < 2; side++) {
+        assert_cut(star, POINTS, side == 1);
+        assert_cut(comb, 4 * TEETH, side == 1);
+        assert_cut(ring, sizeof ring / sizeof ring[0], side == 1);
+        assert_cut(house, sizeof house / sizeof house[0], side == 1);
+    }
+}
+
 static void a_ply_with_a_broken_header_is_refused(void **state) {
     (void)state;
     put(FILE_OF("b.ply"), "ply\nformat ascii 1.0\nelement vertex 0\nend_headr\n");
@@ -957,6 +1019,7 @@ int main(void) {
         T(files_of_no_known_kind_are_refused),
         T(a_polygon_with_a_bad_index_is_dropped_with_a_warning),
         T(a_face_without_corners_beside_a_triangle_is_left_out),
+        T(polygons_that_are_not_convex_are_cut_whole),
         T(a_ply_with_a_broken_header_is_refused),
         T(real_scenes_have_the_triangles_that_others_counted),
         T(all_but_the_glass_of_the_kitchen_is_there),
