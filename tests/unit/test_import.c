@@ -873,6 +873,24 @@ static void polygons_that_are_not_convex_are_cut_whole(void **state) {
     }
 }
 
+/* Assimp 5.4 cuts off no corner that is nearly straight, and drops what is left when it finds no other: more than half of
+ * these. */
+static void polygons_with_nearly_straight_corners_are_cut_whole(void **state) {
+    enum { ROUND = 24 };
+    double ring[2 * ROUND + 2][2];
+    double strip[][2] = {{0, 0}, {4, 0}, {4, 0.001}, {3, 0.0011}, {2, 0.0011}, {1, 0.0011}, {0, 0.001}};
+    (void)state;
+    for (int i = 0; i < 2 * ROUND + 2; i++) { /* round, in by a pair of edges, back round the hole */
+        const double angle = 2.0 * 3.14159265358979 * ((i <= ROUND ? i : 2 * ROUND + 1 - i) % ROUND) / ROUND;
+        ring[i][0] = (i <= ROUND ? 1.0 : 0.8) * cos(angle);
+        ring[i][1] = (i <= ROUND ? 1.0 : 0.8) * sin(angle);
+    }
+    for (int side = 0; side < 2; side++) {
+        assert_cut(ring, 2 * ROUND + 2, side == 1);
+        assert_cut(strip, sizeof strip / sizeof strip[0], side == 1);
+    }
+}
+
 static void a_ply_with_a_broken_header_is_refused(void **state) {
     (void)state;
     put(FILE_OF("b.ply"), "ply\nformat ascii 1.0\nelement vertex 0\nend_headr\n");
@@ -1020,6 +1038,7 @@ int main(void) {
         T(a_polygon_with_a_bad_index_is_dropped_with_a_warning),
         T(a_face_without_corners_beside_a_triangle_is_left_out),
         T(polygons_that_are_not_convex_are_cut_whole),
+        T(polygons_with_nearly_straight_corners_are_cut_whole),
         T(a_ply_with_a_broken_header_is_refused),
         T(real_scenes_have_the_triangles_that_others_counted),
         T(all_but_the_glass_of_the_kitchen_is_there),
