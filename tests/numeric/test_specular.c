@@ -18,18 +18,18 @@ static const char kernels[] =
     "{\n"
     "    uint i = (uint)get_global_id(0) * VIT_LANES, n = (uint)get_global_size(0) * VIT_LANES;\n"
     "    li back = L_GT(L_LOAD(VIT_PLANE(in, 10, n) + i), L_F(0)), thin = L_GT(L_LOAD(VIT_PLANE(in, 11, n) + i), L_F(0));\n"
-    "    shine_paths p = shine_at_glass(lv3_load_planes(in, n, i), lv3_load_planes(VIT_PLANE(in, 3, n), n, i),\n"
+    "    specular_paths p = specular_at_glass(lv3_load_planes(in, n, i), lv3_load_planes(VIT_PLANE(in, 3, n), n, i),\n"
     "                                   lv3_load_planes(VIT_PLANE(in, 6, n), n, i), back, thin, L_LOAD(VIT_PLANE(in, 9, n) + "
     "i));\n"
     "    L_STORE(p.mirror, out + i);\n"
     "    lv3_store_planes(p.mirrored, VIT_PLANE(out, 1, n), n, i);\n"
     "    lv3_store_planes(p.refracted, VIT_PLANE(out, 4, n), n, i);\n"
-    "    L_STORE(shine_absorbed(L_LOAD(in + i), L_LOAD(VIT_PLANE(in, 9, n) + i)), VIT_PLANE(out, 7, n) + i);\n"
+    "    L_STORE(specular_absorbed(L_LOAD(in + i), L_LOAD(VIT_PLANE(in, 9, n) + i)), VIT_PLANE(out, 7, n) + i);\n"
     "}\n"
     "kernel void map_lobe(global const float *in, global float *out)\n" /* n, l, v, exponent */
     "{\n"
     "    uint i = (uint)get_global_id(0) * VIT_LANES, n = (uint)get_global_size(0) * VIT_LANES;\n"
-    "    L_STORE(shine_lobe(lv3_load_planes(in, n, i), lv3_load_planes(VIT_PLANE(in, 3, n), n, i),\n"
+    "    L_STORE(specular_lobe(lv3_load_planes(in, n, i), lv3_load_planes(VIT_PLANE(in, 3, n), n, i),\n"
     "                       lv3_load_planes(VIT_PLANE(in, 6, n), n, i), L_LOAD(VIT_PLANE(in, 9, n) + i)), out + i);\n"
     "}\n";
 
