@@ -1,7 +1,7 @@
-/* Steps 4 and 5 of dark_sides.c. Sides that hang together mostly share their fate: a group none of whose sides any ray connects
+/* Steps 4 and 6 of dark_sides.c. Sides that hang together mostly share their fate: a group none of whose sides any ray connects
  * to light is the inside of a body, most often, and its sides share what one side may ask, up to ASK_LIGHTS rays towards lights
  * and ASK_RAYS into the room. Once any of them has found light, however little, every one is looked at by itself (step 4) and
- * asked with all rays each (step 5). A side is never called lit for the others' sake, and costs more than a handful of rays
+ * asked with all rays each (step 6). A side is never called lit for the others' sake, and costs more than a handful of rays
  * where light is near alone. Large sides are many times as much of the picture as small ones, and are asked as many times more.
  * A patch of triangles is one thread's work and needs nothing of the others. */
 #include "dark_sides/parts.h"
@@ -59,7 +59,7 @@ static void add_light(asking *a, uint16_t side, uint32_t found) {
  * side of it beyond doubt. */
 static void judge(asking *a, uint16_t side, uint32_t rays) {
     const uint32_t first = gathered(a, side), all = first + most_rays(a, side), last = first + IN_DOUBT * most_rays(a, side);
-    const float threshold = a->s->threshold, doubt = DOUBT * sqrtf(a->squares[side]), sum = a->sum[side];
+    const float threshold = a->s->least[2 * a->patch.first + side], doubt = DOUBT * sqrtf(a->squares[side]), sum = a->sum[side];
     if (sum >= threshold * (float)last || (sum >= threshold * (float)all && sum - threshold * (float)all >= doubt))
         found_lit(a, side);
     else if (rays >= all && (rays >= last || fabsf(sum - threshold * (float)rays) >= doubt)) {
@@ -75,7 +75,7 @@ static void ask(asking *a, uint16_t side, uint32_t lights, uint32_t rays) {
     const uint32_t whole = 2 * a->patch.first + side, all_lights = most_lights(a, side), first = gathered(a, side);
     const ray_side from = side_of(s->g, whole);
     for (; a->open[side] && lights > 0 && a->lights[side] < all_lights; lights--, a->shot++)
-        if (lights_ask(s, whole, &from, a->lights[side]++))
+        if (lights_ask(s, whole, &from, a->lights[side]++) > 0.0f)
             found_lit(a, side);
     for (; a->open[side] && rays > 0; rays--, a->shot++) {
         float distance;
@@ -145,8 +145,9 @@ void dark_sides_find_faint(void *search, uint32_t patch) {
         }
     for (uint32_t i = 0; i < 2 * a.patch.count; i++) {
         const uint32_t whole = 2 * a.patch.first + i, group = a.patch.group[i];
-        s->faint[whole] = side_material(s->m, s->g, whole)->kind == VIT_MATTE && a.light[group] && !(s->direct[whole] > 0.0f) &&
-                          sum[group] < DARK_SIDES_FAINT * s->threshold * (float)count[group];
+        const bool faint = side_material(s->m, s->g, whole)->kind == VIT_MATTE && a.light[group] &&
+                           !(s->direct[whole] > 0.0f) && sum[group] < DARK_SIDES_FAINT * s->threshold * (float)count[group];
+        s->more[whole] = faint ? DARK_SIDES_LOOKED : 0;
     }
 }
 

@@ -5,7 +5,8 @@
  *   3. E = direct + albedo * mean of E over what the rays found, repeated until light has gone everywhere (Jacobi);
  *   4. sides that hang together with sides that some light comes to, but are faint themselves, shoot more, and 3 is repeated:
  * light that comes through few ways is found by few rays;
- *   5. sides whose rays do not make them lit for sure ask with more rays of their own and rays towards the lights: triangles
+ *   5. what dim frames see is lit by less (dark_sides/views.c);
+ *   6. sides whose rays do not make them lit for sure ask with more rays of their own and rays towards the lights: triangles
  * too small for 1 and 2 are not darkened by bad luck (dark_sides/ask.c). A side gets about ten rays in all, whatever it is part
  * of, unless it lies where it gets dark.
  *
@@ -27,7 +28,6 @@
 #define LEAST_GATHERED 4u /* rays per side in step 2, between these and so that they are GATHERED in all */
 #define MOST_GATHERED 16u
 #define GATHERED (1u << 20)
-#define LOOKED 16u                  /* and so many more by faint ones in step 4 */
 #define GATHERED_BY_AREA (1u << 17) /* and so many by area: what large sides give lights much */
 #define ITERATIONS 40               /* 0.8^40 = 1e-4 */
 #define STILL 4                     /* turns without news after which nothing more comes */
@@ -151,29 +151,37 @@ static float threshold_of(const dark_sides_search *s) {
     return area > 0.0 ? (float)((double)DARK_SIDES_THRESHOLD * mean / area) : 0.0f;
 }
 
-/* Step 4. */
-static void gather_faint(void *user, uint32_t side) {
+static void gather_added(void *user, uint32_t side) {
     dark_sides_search *s = user;
-    if (s->faint[side])
-        gather_from(s, side, s->found_first[side + 1] - s->found_first[side] - LOOKED);
+    if (s->more[side] > 0)
+        gather_from(s, side, s->found_first[side + 1] - s->found_first[side] - s->more[side]);
 }
 
-/* Makes room for LOOKED rays more of each faint side. False: out of memory. */
+/* Makes room for the rays that sides get. False: out of memory. */
 static bool make_room(dark_sides_search *s) {
-    uint32_t more = 0;
+    uint64_t sum = 0;
     for (uint32_t side = 0; side < s->sides; side++)
-        more += s->faint[side] ? LOOKED : 0;
+        sum += s->more[side];
     const uint32_t all = s->found_first[s->sides];
-    uint32_t *found = more <= UINT32_MAX - all ? realloc(s->found, ((size_t)all + more) * sizeof *found) : NULL;
+    uint32_t *found = sum <= UINT32_MAX - all ? realloc(s->found, (size_t)(all + sum) * sizeof *found) : NULL;
     if (!found)
         return false;
     s->found = found;
+    uint32_t more = (uint32_t)sum;
     for (uint32_t side = s->sides; side > 0; side--) { /* from the end, where the room is */
         const uint32_t first = s->found_first[side - 1], count = s->found_first[side] - first;
         s->found_first[side] += more;
-        more -= s->faint[side - 1] ? LOOKED : 0;
+        more -= s->more[side - 1];
         memmove(found + first + more, found + first, count * sizeof *found);
     }
+    return true;
+}
+
+bool dark_sides_gather_more(dark_sides_search *s, unsigned threads) {
+    if (!make_room(s))
+        return false;
+    parallel_for(threads, s->sides, gather_added, s);
+    solve(s, threads);
     return true;
 }
 
@@ -181,19 +189,25 @@ static uint32_t patches(const dark_sides_search *s) {
     return (s->m->triangles + PATCH_TRIANGLES - 1) / PATCH_TRIANGLES;
 }
 
-/* False: out of memory. */
+static void set_threshold(dark_sides_search *s) {
+    s->threshold = threshold_of(s);
+    for (uint32_t side = 0; side < s->sides; side++)
+        s->least[side] = s->threshold;
+}
+
+/* Step 4. False: out of memory. */
 static bool look_closer(dark_sides_search *s, unsigned threads) {
     parallel_for(threads, patches(s), dark_sides_find_faint, s);
-    if (!make_room(s))
+    if (!dark_sides_gather_more(s, threads))
         return false;
-    parallel_for(threads, s->sides, gather_faint, s);
-    solve(s, threads);
-    s->threshold = threshold_of(s);
+    set_threshold(s);
     return true;
 }
 
 /* False: out of memory. */
 static bool run_steps(dark_sides_search *s, unsigned threads, dark_sides_progress_fn *progress, void *user) {
+    const tracks *t = s->lights.t;
+    const uint32_t frames = s->lights.frames;
     parallel_for(threads, s->light_rays, shoot_from_light, s);
     if (progress)
         progress(user, 0.1);
@@ -201,11 +215,11 @@ static bool run_steps(dark_sides_search *s, unsigned threads, dark_sides_progres
     if (progress)
         progress(user, 0.4);
     solve(s, threads);
-    s->threshold = threshold_of(s);
+    set_threshold(s);
     if (progress)
         progress(user, 0.5);
     if (s->threshold > 0.0f) {
-        if (!look_closer(s, threads))
+        if (!look_closer(s, threads) || !dark_sides_judge_views(s, t, frames, threads))
             return false;
         if (progress)
             progress(user, 0.6);
@@ -259,9 +273,11 @@ static bool allocate(dark_sides_search *s) {
     s->irradiance = malloc(s->sides * sizeof *s->irradiance);
     s->next_irradiance = malloc(s->sides * sizeof *s->next_irradiance);
     s->path = calloc(s->sides, sizeof *s->path);
+    s->least = malloc(s->sides * sizeof *s->least);
     s->lit = calloc(s->sides, sizeof *s->lit);
-    s->faint = calloc(s->sides, sizeof *s->faint);
-    return share_rays(s) && s->flux && s->direct && s->irradiance && s->next_irradiance && s->path && s->lit && s->faint;
+    s->more = calloc(s->sides, sizeof *s->more);
+    return share_rays(s) && s->flux && s->direct && s->irradiance && s->next_irradiance && s->path && s->least && s->lit &&
+           s->more;
 }
 
 static void release(dark_sides_search *s) {
@@ -275,8 +291,9 @@ static void release(dark_sides_search *s) {
     free(s->irradiance);
     free(s->next_irradiance);
     free(s->path);
+    free(s->least);
     free(s->lit);
-    free(s->faint);
+    free(s->more);
 }
 
 /* Areas and lights. False: out of memory. */

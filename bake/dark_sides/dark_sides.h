@@ -7,10 +7,12 @@
 #include "motion/tracks.h"
 
 /* A side is dark if its irradiance, averaged over the path, with surfaces that reflect DARK_SIDES_ALBEDO, stays below
- * DARK_SIDES_THRESHOLD of the mean over all sides. Not zero: real models have cracks, and through cracks a little light gets
- * everywhere. */
+ * DARK_SIDES_THRESHOLD of the mean over all sides, and, if a frame of the path sees it, below DARK_SIDES_VIEW of the brightest
+ * light in that frame but for a tenth of it: a dim room is not dark if it fills the picture. Not zero: real models have cracks,
+ * and through cracks a little light gets everywhere. */
 #define DARK_SIDES_ALBEDO 0.8f
 #define DARK_SIDES_THRESHOLD 1e-4f
+#define DARK_SIDES_VIEW 1e-3f
 
 typedef struct dark_sides {
     double area;                  /* m2, both sides of all triangles but those of mirrors and glass */

@@ -2,9 +2,11 @@
  * much as any other. */
 #include "dark_sides/parts.h"
 #include "light/sky.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
+#define PI 3.14159265f
 #define LIGHT_STREAM 0xffffffffu
 
 static double mean_intensity(const vit_light *l) {
@@ -142,38 +144,55 @@ static uint32_t pick(float u, uint32_t count) {
 }
 
 /* A point of an area light, on the side of it that `o` is on. False: something covers it there. */
-static bool lamp_point(const dark_sides_search *s, uint32_t other, vec o, vec *at) {
+static bool lamp_point(const dark_sides_search *s, uint32_t other, vec o, vec *at, vec *across) {
     const uint32_t area_light = 2 * choose_area_light(&s->lights, sequence(other, 1, 0));
     const ray_side face = side_of(s->g, area_light);
-    const vec front = side_point(&face, sequence(other, 1, 1), sequence(other, 1, 2)), across = face.normal;
-    const bool before = (o.x - front.x) * across.x + (o.y - front.y) * across.y + (o.z - front.z) * across.z > 0.0f;
-    *at = before ? front : plus(front, -2.0f * s->g->ray_offset, across);
+    const vec front = side_point(&face, sequence(other, 1, 1), sequence(other, 1, 2)), n = face.normal;
+    const bool before = (o.x - front.x) * n.x + (o.y - front.y) * n.y + (o.z - front.z) * n.z > 0.0f;
+    *at = before ? front : plus(front, -2.0f * s->g->ray_offset, n);
+    *across = n;
     return !ray_scene_covered(&s->rays, area_light + !before, *at);
 }
 
-bool lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i) {
+static float along(vec a, vec b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* Of a light of power 1, W/m2, at a place that sees it in unit direction `to`, d metres away. */
+static float irradiance_of(const vit_light *l, vec n, vec to, float d) {
+    const float cosine = along(to, n);
+    if (l->kind == VIT_LIGHT_DIRECTIONAL)
+        return cosine / (PI * l->spot_scale * l->spot_scale);
+    return cosine / (2.0f * PI * (l->kind == VIT_LIGHT_SPOT ? 1.0f - l->cos_outer : 2.0f) * d * d);
+}
+
+float lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i) {
     const dark_sides_lights *all = &s->lights;
     const uint32_t source = pick(side_sequence(from, i, 2), all->sources), frame = pick(side_sequence(from, i, 3), all->frames);
     const vec n = from->normal, o = side_point(from, side_sequence(from, i, 0), side_sequence(from, i, 1));
     const uint32_t other = side + i; /* for other numbers */
-    if (is_sky(all, source))
-        return ray_scene_passes(&s->rays, o, cosine_direction(n, sequence(other, 1, 0), sequence(other, 1, 1)), INFINITY);
+    if (is_sky(all, source)) {
+        const vec up = cosine_direction(n, sequence(other, 1, 0), sequence(other, 1, 1));
+        return ray_scene_passes(&s->rays, o, up, INFINITY) ? 1.0f / (4.0f * PI * all->radius * all->radius) : 0.0f;
+    }
     const vit_light *l = source < all->t->light_count ? light_of(all, source, frame) : NULL;
     if (l && !(mean_intensity(l) > 0.0))
-        return false;
+        return 0.0f;
     vec at = {0.0f, 0.0f, 0.0f}, axis = {0.0f, 0.0f, 0.0f};
     if (l) {
         at = vec_of(l->position);
         axis = vec_of(l->direction);
-    } else if (!lamp_point(s, other, o, &at))
-        return false;
+    } else if (!lamp_point(s, other, o, &at, &axis))
+        return 0.0f;
     const vec to = {at.x - o.x, at.y - o.y, at.z - o.z};
     const float d = fmaxf(sqrtf(to.x * to.x + to.y * to.y + to.z * to.z), s->g->ray_offset);
     const bool parallel = l && l->kind == VIT_LIGHT_DIRECTIONAL;
     const vec unit = parallel ? (vec){-axis.x, -axis.y, -axis.z} : (vec){to.x / d, to.y / d, to.z / d};
-    if (!(unit.x * n.x + unit.y * n.y + unit.z * n.z > 0.0f))
-        return false;
-    if (l && l->kind == VIT_LIGHT_SPOT && !(-(unit.x * axis.x + unit.y * axis.y + unit.z * axis.z) >= l->cos_outer))
-        return false;
-    return ray_scene_passes(&s->rays, o, unit, parallel ? INFINITY : d);
+    if (!(along(unit, n) > 0.0f) || (l && l->kind == VIT_LIGHT_SPOT && !(-along(unit, axis) >= l->cos_outer)))
+        return 0.0f;
+    if (!ray_scene_passes(&s->rays, o, unit, parallel ? INFINITY : d))
+        return 0.0f;
+    if (l) /* an area light has half of its power on either side */
+        return irradiance_of(l, n, unit, d);
+    return fmaxf(along(unit, n) * fabsf(along(unit, axis)) / (2.0f * PI * d * d), FLT_MIN);
 }

@@ -33,8 +33,10 @@ typedef struct dark_sides_search {
     uint32_t *found_first;
     float *direct, *irradiance, *next_irradiance;
     float *path;               /* a side: summed length of the rays of step 2 that found something, m */
-    float threshold;           /* irradiance by reflection below which a side is dark */
-    bool *lit, *faint;         /* a side; faint: to be looked at more closely (step 4) */
+    float threshold;           /* irradiance by reflection below which a side is dark, */
+    float *least;              /* a side: its own, less where dim frames see it */
+    bool *lit;                 /* a side */
+    uint32_t *more;            /* a side: rays that step 4 or 5 adds to it */
     atomic_uint newly_reached; /* sides that light came to in the last turn of step 3 */
     atomic_ullong shot;        /* rays */
 } dark_sides_search;
@@ -51,8 +53,8 @@ void lights_close(dark_sides_lights *l);
 bool lights_emit(const dark_sides_lights *l);
 /* Ray `ray` of all that leave lights, spread over sources and frames. False: it does not leave. */
 bool lights_leave(const dark_sides_search *s, uint32_t ray, vec *origin, vec *direction);
-/* Does some light in some frame shine on the side, by shadow ray `i`? */
-bool lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i);
+/* Irradiance of the side by shadow ray `i`, to some light in some frame: right on average; 0: it does not shine there. */
+float lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i);
 
 /* dark_sides/edges.c: which sides of a patch, triangles first .. first + count - 1, hang together: neighbours across an edge
  * that only they share, on the same side of the surface. */
@@ -64,10 +66,18 @@ typedef struct dark_sides_patch {
 } dark_sides_patch;
 void patch_link(const geometry *g, uint32_t first, uint32_t count, dark_sides_patch *out);
 
+/* Gathers s->more rays more a side and repeats step 3. False: out of memory. */
+bool dark_sides_gather_more(dark_sides_search *s, unsigned threads);
+
+/* dark_sides/views.c. Sets s->least, which is s->threshold before, where dim frames see sides. False: out of memory. */
+bool dark_sides_judge_views(dark_sides_search *s, const tracks *t, uint32_t frames, unsigned threads);
+
 /* dark_sides/ask.c, both by what is known and for patch `patch`. */
-/* Sets s->faint: hanging together with sides that some light comes to, but having less than DARK_SIDES_FAINT thresholds of it.
+/* Sets s->more to DARK_SIDES_LOOKED where faint: hanging together with sides that some light comes to, but having less than
+ * DARK_SIDES_FAINT thresholds of it.
  */
 #define DARK_SIDES_FAINT 1000.0f
+#define DARK_SIDES_LOOKED 16u
 void dark_sides_find_faint(void *search, uint32_t patch);
 /* Sets s->lit, by further rays where it is not known. */
 void dark_sides_ask_patch(void *search, uint32_t patch);

@@ -88,6 +88,49 @@ static void what_is_stated_stays(void **state) {
     assert_false(scene_lab_said(l, "quality \"auto\""));
 }
 
+static void add_box(FILE *f, int *vertices, const double lo[3], const double hi[3]) {
+    static const int face[6][4] = {{1, 5, 7, 3}, {2, 4, 8, 6}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 3, 4, 2}, {5, 6, 8, 7}};
+    for (int i = 0; i < 8; i++)
+        (void)fprintf(f, "v %g %g %g\n", i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]);
+    for (int i = 0; i < 6; i++)
+        (void)fprintf(f, "f %d %d %d %d\n", *vertices + face[i][0], *vertices + face[i][1], *vertices + face[i][2],
+                      *vertices + face[i][3]);
+    *vertices += 8;
+}
+
+/* A room of 4 m on a field of 120 m in the sun, which comes in by a slit of 5 cm: its light is some 1e-5 of the scene's mean,
+ * and all that the picture shows. */
+static void a_room_behind_a_slit_is_not_black(void **state) {
+    static const double box[][2][3] = {
+        {{-60, -1, -60}, {60, 0, 60}},       {{-2.1, 0, -2.1}, {2.1, 0.1, 2.1}}, {{-2.1, 3, -2.1}, {2.1, 3.1, 2.1}},
+        {{-2.1, 0.1, -2.1}, {-2, 3, 2.1}},   {{2, 0.1, -2.1}, {2.1, 3, 2.1}},    {{-2, 0.1, -2.1}, {2, 3, -2}},
+        {{-2, 0.1, 2}, {-0.025, 3, 2.1}},    {{0.025, 0.1, 2}, {2, 3, 2.1}},     {{-0.025, 0.1, 2}, {0.025, 0.6, 2.1}},
+        {{-0.025, 2.6, 2}, {0.025, 3, 2.1}},
+    };
+    char line[1024];
+    scene_lab *l = *state;
+    FILE *f = scene_lab_create(l, "slit.obj");
+    int vertices = 0;
+    for (size_t i = 0; i < sizeof box / sizeof *box; i++)
+        add_box(f, &vertices, box[i][0], box[i][1]);
+    (void)fclose(f);
+    f = scene_lab_create(l, "scene.cfg");
+    (void)fprintf(f,
+                  "output: { width = 32; height = 24; frames = 1; };\nmeshes = ( { file = \"slit.obj\"; } );\n"
+                  "camera: { exposure = \"auto\"; keys = ( { eye = [1.6, 1.8, 1.6]; target = [-1.5, 1.0, -1.5]; fov = 70.0; } "
+                  "); };\n"
+                  "lights = ( { type = \"directional\"; keys = ( { position = [3.0, 10.0, 8.0]; target = [0.0, 0.0, 0.0]; "
+                  "irradiance = [30.0, 28.0, 24.0]; } ); } );\n"
+                  "materials = ( { name = \"DefaultMaterial\"; color = [0.6, 0.6, 0.6]; } );\n"
+                  "quality: { auto = true; photons = 8000; radius = 0.5; bounces = 10; };\n");
+    (void)fclose(f);
+    bake(l, "");
+    told(l, "quality \"auto\": {", line);
+    if (farthest(line) > 0.1)
+        fail_msg("%s", line);
+    assert_false(scene_lab_said(l, "of the picture is black"));
+}
+
 static int set_up(void **state) {
     static const double half[3] = {1.0, 1.0, 1.0};
     scene_lab_set_up(state);
@@ -99,6 +142,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_chosen_is_right_with_any_number_of_threads_and_the_defaults_are_not),
         cmocka_unit_test(what_is_stated_stays),
+        cmocka_unit_test(a_room_behind_a_slit_is_not_black),
     };
     return cmocka_run_group_tests(tests, set_up, scene_lab_tear_down);
 }

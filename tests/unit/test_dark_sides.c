@@ -22,6 +22,7 @@ typedef struct fixture {
     bvh b;
     geometry g;
     vit_light lights[MAX_FRAMES];
+    vit_camera *cameras; /* a frame; NULL: nothing is looked at */
     uint32_t frames;
     bool sky;
     uint32_t flags[MAX_TRIANGLES]; /* found, by the triangle's number in the model */
@@ -105,7 +106,7 @@ static void add_light(fixture *f, float x, float y, float z) {
 }
 
 static void search(fixture *f, unsigned threads) {
-    const tracks t = {.lights = f->lights, .light_count = f->frames > 0};
+    const tracks t = {.cameras = f->cameras, .lights = f->lights, .light_count = f->frames > 0};
     vit_text why = {""};
     bvh_free(&f->b);
     geometry_free(&f->g);
@@ -318,34 +319,62 @@ static void add_wall(fixture *f, float x, float z, float width) {
     add_plate(f, (const float[]){x, 5 - beside, near}, (const float[]){0, beside, 0}, (const float[]){0, 0, width}, 2);
 }
 
+/* Looks along x, 90 degrees wide, 100 pixels. */
+static vit_camera camera_at(float x, float y, float z, float forward) {
+    return (vit_camera){.eye = {x, y, z},
+                        .exposure = 1.0f,
+                        .corner = {forward, 1.0f, -forward},
+                        .right = {0, 0, 0.02f * forward},
+                        .down = {0, -0.02f, 0},
+                        .forward = {forward, 0, 0}};
+}
+
 /* Three rooms of 400 m2 in a row, the lamp in the first, each open to the next by a hole out of the lamp's sight: what comes
  * in, 0.8 E width^2, is what 0.2 of the walls swallow, so each has 1e-2 width^2 of the irradiance before it; the threshold
- * is 1.8e-5 of the first. Returns the part of the last one's outer walls that is lit. */
-static double lit_behind_two_holes(float width) {
+ * is 1.8e-5 of the first. Returns the part of the last one's outer walls that is lit. All outsides must be dark, as must a
+ * closed box in the last room. */
+static double lit_behind_two_holes(float width, vit_camera *cameras) {
     fixture *f = make();
     const uint32_t box = add_box(f, (const float[]){-15, 0, -5}, (const float[]){15, 5, 5}, 24), end = f->m.triangles;
     add_wall(f, 5, -3, width);
     add_wall(f, -5, 3, width);
+    const uint32_t inner = add_box(f, (const float[]){-11, 0.1f, -2}, (const float[]){-10.6f, 0.5f, -1.6f}, 4);
+    f->cameras = cameras;
     add_light(f, 10, 4, 4);
     search(f, 2);
     uint32_t walls = 0, lit = 0;
     for (uint32_t i = box; i < end; i++) {
         const float *p = f->m.position + 9 * (size_t)i;
+        assert_true(f->flags[i] & VIT_SIDE_DARK_FRONT);
         if (p[0] + p[3] + p[6] < 3 * -5.0f) {
             walls++;
             lit += !(f->flags[i] & VIT_SIDE_DARK_BACK);
         }
     }
+    for (uint32_t i = inner; i < f->m.triangles; i++)
+        assert_true(f->flags[i] & VIT_SIDE_DARK_BACK);
     drop(f);
     return (double)lit / walls;
 }
 
 static void a_dim_room_is_lit_and_a_dimmer_one_dark(void **state) {
     (void)state;
-    const double dim = lit_behind_two_holes(0.9f), dimmer = lit_behind_two_holes(0.5f);
+    const double dim = lit_behind_two_holes(0.9f, NULL), dimmer = lit_behind_two_holes(0.5f, NULL);
     print_message("lit: %.4f with 3.6 times the threshold, %.4f with 0.35 of it\n", dim, dimmer);
     assert_true(dim > 0.98);
     assert_true(dimmer < 0.05);
+}
+
+/* Seen from within, the dimmer room is all that there is; from the first room it is nothing. */
+static void a_dim_room_that_fills_a_frame_is_lit(void **state) {
+    (void)state;
+    vit_camera there = camera_at(-6, 2.5f, -4, -1), here = camera_at(8, 2.5f, 0, -1);
+    const double seen = lit_behind_two_holes(0.5f, &there), narrow = lit_behind_two_holes(0.1f, &there),
+                 unseen = lit_behind_two_holes(0.5f, &here);
+    print_message("lit: %.4f and %.4f seen from within, with 0.35 and 0.0006 of the threshold, %.4f from afar\n", seen, narrow,
+                  unseen);
+    assert_true(seen > 0.98 && narrow > 0.98);
+    assert_true(unseen < 0.05);
 }
 
 static void without_light_nothing_is_flagged(void **state) {
@@ -541,6 +570,7 @@ int main(void) {
         cmocka_unit_test(a_spot_light_lights_only_its_cone),
         cmocka_unit_test(insides_of_bodies_cost_few_rays),
         cmocka_unit_test(a_dim_room_is_lit_and_a_dimmer_one_dark),
+        cmocka_unit_test(a_dim_room_that_fills_a_frame_is_lit),
         cmocka_unit_test(without_light_nothing_is_flagged),
         cmocka_unit_test(one_thread_and_two_flag_the_same_sides),
         cmocka_unit_test(light_goes_the_mean_chord_of_a_cube),
