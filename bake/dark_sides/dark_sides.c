@@ -306,20 +306,21 @@ static bool prepare(dark_sides_search *s, const tracks *t, uint32_t frames, bool
     return s->area && lights_open(s, t, frames, sky);
 }
 
-vit_status dark_sides_find(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
-                           dark_sides_progress_fn *progress, void *user, dark_sides *out, vit_text *why) {
+vit_status dark_sides_find(const dark_sides_input *in, geometry *g, dark_sides *out, vit_text *why) {
+    const model *m = in->model;
     const double start = seconds();
     *out = (dark_sides){0};
     dark_sides_search s = {.g = g, .m = m, .sides = 2 * m->triangles};
     s.light_rays = between(LEAST_LIGHT_RAYS, 2 * (uint64_t)s.sides, MOST_LIGHT_RAYS);
     s.gathered = between(LEAST_GATHERED, GATHERED / s.sides, MOST_GATHERED);
-    const bool fine = prepare(&s, t, frames, sky_light);
+    const bool fine = prepare(&s, in->tracks, in->frames, in->sky_light);
     vit_status status = VIT_OK;
     if (fine && !lights_emit(&s.lights)) {
         release(&s);
         return VIT_OK;
     }
-    if (!fine || !allocate(&s) || !ray_scene_open(m, g, threads, &s.rays) || !run_steps(&s, threads, progress, user)) {
+    if (!fine || !allocate(&s) || !ray_scene_open(m, g, in->threads, &s.rays) ||
+        !run_steps(&s, in->threads, in->progress, in->user)) {
         snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");
         status = VIT_FAILED;
     } else {

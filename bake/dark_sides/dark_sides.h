@@ -26,10 +26,18 @@ typedef struct dark_sides {
 /* `done` runs from 0 to 1. Called by the thread that called dark_sides_find(). */
 typedef void dark_sides_progress_fn(void *user, double done);
 
-/* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of `frames` frames, the model's
- * area lights and, if `sky_light`, light from all round. Without any light or matt surface nothing is flagged. The result does
- * not depend on `threads` (0: all cores). `progress` may be NULL. VIT_FAILED: out of memory, or Embree fails. */
-vit_status dark_sides_find(const model *m, const tracks *t, uint32_t frames, bool sky_light, geometry *g, unsigned threads,
-                           dark_sides_progress_fn *progress, void *user, dark_sides *out, vit_text *why);
+typedef struct dark_sides_input {
+    const model *model;
+    const tracks *tracks; /* lights of `frames` frames */
+    uint32_t frames;
+    bool sky_light;                   /* light comes from all round, too */
+    unsigned threads;                 /* 0: all cores; changes no byte */
+    dark_sides_progress_fn *progress; /* may be NULL */
+    void *user;
+} dark_sides_input;
+
+/* Sets VIT_SIDE_DARK_FRONT and VIT_SIDE_DARK_BACK in g->attributes[].material for the lights of the frames, the model's area
+ * lights and the sky. Without any light or matt surface nothing is flagged. VIT_FAILED: out of memory, or Embree fails. */
+vit_status dark_sides_find(const dark_sides_input *in, geometry *g, dark_sides *out, vit_text *why);
 
 #endif

@@ -46,15 +46,16 @@ static uint32_t share(const scene *s, double power, double total, const double *
 }
 
 /* Nobody gets paths where no surface could store a photon. */
-static vit_status share_paths(const scene *s, tracks *t, const environment *sky, const dark_sides *r, const double *worth,
-                              plan *p, vit_text *why) {
+static vit_status share_paths(const plan_input *in, const double *worth, plan *p, vit_text *why) {
+    const scene *s = in->scene;
+    tracks *t = in->tracks;
     const double area = sum_of(p->area.flux) / TWO_PI;
-    const double above = s->sky.light ? 0.5 * sum_of(sky->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
+    const double above = s->sky.light ? 0.5 * sum_of(in->sky->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
     uint32_t first = 0;
     for (uint32_t i = 0; i < t->light_count; i++)
         total += gives_photons(s, i) ? mean_power(t, (uint32_t)s->frames, i) : 0;
-    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0) || !(r->area > 0))
+    if (s->quality.photons == 0 || s->quality.bounces < 2 || !(total > 0) || !(in->dark_sides->area > 0))
         return VIT_OK;
     p->area_paths = share(s, area, total, worth ? worth + t->light_count : NULL);
     p->sky_paths = share(s, above, total, worth ? worth + t->light_count + 1 : NULL);
@@ -190,8 +191,14 @@ static bool has_paths(const tracks *t, const plan *p) {
     return some;
 }
 
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g,
-                     const dark_sides *r, const environment *sky, unsigned threads, plan *out, vit_text *why) {
+vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
+    const scene *s = in->scene;
+    const model *m = in->model;
+    tracks *t = in->tracks;
+    const atlas *a = in->atlas;
+    const bvh *b = in->bvh;
+    const geometry *g = in->geometry;
+    const dark_sides *r = in->dark_sides;
     memset(out, 0, sizeof *out);
     vit_scene *c = &out->scene;
     out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
@@ -236,9 +243,9 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
                               .ray_offset = g->ray_offset,
                               .box_pad = b->box_pad};
     sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius); /* 2. lights, and who gets how many photon paths */
-    vit_status status = area_lights_find(&lit, t->cameras, (uint32_t)s->frames, threads, &out->area, why);
+    vit_status status = area_lights_find(&lit, t->cameras, (uint32_t)s->frames, in->threads, &out->area, why);
     if (status == VIT_OK)
-        status = share_paths(s, t, sky, r, NULL, out, why);
+        status = share_paths(in, NULL, out, why);
     if (status != VIT_OK) {
         plan_free(out);
         return status;
@@ -251,7 +258,7 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
         c->chain = (uint32_t)s->quality.specular_depth;
         c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
     }
-    c->effects |= plan_area_lights(s, sky, out);
+    c->effects |= plan_area_lights(s, in->sky, out);
     if (s->quality.sample_bits == 16) {
         c->effects |= VIT_BIT(SMALL_SAMPLES);
         plan_grid(m, c);
@@ -276,9 +283,8 @@ vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, 
     return VIT_OK;
 }
 
-vit_status plan_share(const scene *s, tracks *t, const dark_sides *r, const environment *sky, const double *worth, plan *p,
-                      vit_text *why) {
-    const vit_status status = share_paths(s, t, sky, r, worth, p, why);
+vit_status plan_share(const plan_input *in, const double *worth, plan *p, vit_text *why) {
+    const vit_status status = share_paths(in, worth, p, why);
     p->area_paths = p->scene.effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = p->scene.effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     return status;

@@ -18,18 +18,29 @@ typedef struct plan {
     uint32_t area_paths, sky_paths;  /* of all area lights and of the sky, to bake: they are still */
     float sky_center[3], sky_radius; /* of a sphere round the scene, m */
     double lit_area;                 /* m2 of sides that light can reach */
-    double free_path;                /* reach.free_path, m */
+    double free_path;                /* dark_sides.free_path, m */
     effects_decided effects;
 } plan;
 
-/* Also sets path_first and path_count in the tracks' lights. Photon paths are shared among the lights, the area lights together
- * and the sky in proportion to their mean power, in multiples of 16 (a packet of paths has one light), at least 16 each. */
-vit_status plan_make(const scene *s, const model *m, tracks *t, const atlas *a, const bvh *b, const geometry *g,
-                     const dark_sides *r, const environment *sky, unsigned threads, plan *out, vit_text *why);
+typedef struct plan_input {
+    const scene *scene;
+    const model *model;
+    tracks *tracks; /* path_first and path_count of its lights are set */
+    const atlas *atlas;
+    const bvh *bvh;
+    const geometry *geometry;
+    const dark_sides *dark_sides;
+    const environment *sky;
+    unsigned threads; /* 0: all cores; changes no byte */
+} plan_input;
+
+/* Photon paths are shared among the lights, the area lights together and the sky in proportion to their mean power, in
+ * multiples of 16 (a packet of paths has one light), at least 16 each. */
+vit_status plan_make(const plan_input *in, plan *out, vit_text *why);
 void plan_free(plan *p);
-/* Shares the paths anew by what each of the tracks' lights, all area lights and the sky are worth (photon_guiding.h); sum 1. */
-vit_status plan_share(const scene *s, tracks *t, const dark_sides *r, const environment *sky, const double *worth, plan *p,
-                      vit_text *why);
+/* Shares the paths anew by what each of the tracks' lights, all area lights and the sky are worth (photon_guiding.h); sum 1. Of
+ * the input scene, tracks, dark_sides and sky count. */
+vit_status plan_share(const plan_input *in, const double *worth, plan *p, vit_text *why);
 
 /* What radius "auto" is, m, if a frame stores so many photons (> 0). Until that has been measured the plan assumes all slots.
  */

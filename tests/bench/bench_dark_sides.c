@@ -45,7 +45,8 @@ static dark_sides measure(bool balls, uint32_t triangles, uint32_t *made) {
     if (bvh_build(&r.m, 0, &b, &why) != VIT_OK || geometry_pack(&r.m, &b, &g, &why) != VIT_OK)
         bench_fail("%s", why.text);
     const double start = cpu_seconds();
-    if (dark_sides_find(&r.m, &r.t, DARK_SIDES_FRAMES, false, &g, 0, NULL, NULL, &found, &why) != VIT_OK)
+    if (dark_sides_find(&(const dark_sides_input){.model = &r.m, .tracks = &r.t, .frames = DARK_SIDES_FRAMES}, &g, &found,
+                        &why) != VIT_OK)
         bench_fail("%s", why.text);
     found.seconds = cpu_seconds() - start;
     *made = r.m.triangles;

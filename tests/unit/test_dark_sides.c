@@ -110,8 +110,10 @@ static void search(fixture *f, unsigned threads) {
     vit_text why = {""};
     bvh_free(&f->b);
     geometry_free(&f->g);
+    const dark_sides_input in = {
+        .model = &f->m, .tracks = &t, .frames = f->frames > 0 ? f->frames : 1, .sky_light = f->sky, .threads = threads};
     if (bvh_build(&f->m, 1, &f->b, &why) != VIT_OK || geometry_pack(&f->m, &f->b, &f->g, &why) != VIT_OK ||
-        dark_sides_find(&f->m, &t, f->frames > 0 ? f->frames : 1, f->sky, &f->g, threads, NULL, NULL, &f->r, &why) != VIT_OK)
+        dark_sides_find(&in, &f->g, &f->r, &why) != VIT_OK)
         fail_msg("%s", why.text);
     for (uint32_t i = 0; i < f->m.triangles; i++)
         f->flags[f->b.order[i]] = f->g.attributes[i].material & (VIT_SIDE_DARK_FRONT | VIT_SIDE_DARK_BACK);

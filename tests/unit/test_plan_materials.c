@@ -58,8 +58,17 @@ static void plan_scene(const char *text, planned *x) {
         status = geometry_pack(&x->m, &x->b, &x->g, &why);
     if (status == VIT_OK)
         status = atlas_pack(&x->m, &x->a, &why);
+    const plan_input in = {.scene = &x->s,
+                           .model = &x->m,
+                           .tracks = &x->t,
+                           .atlas = &x->a,
+                           .bvh = &x->b,
+                           .geometry = &x->g,
+                           .dark_sides = &r,
+                           .sky = &(const environment){0},
+                           .threads = 1};
     if (status == VIT_OK)
-        status = plan_make(&x->s, &x->m, &x->t, &x->a, &x->b, &x->g, &r, &(const environment){0}, 1, &x->p, &why);
+        status = plan_make(&in, &x->p, &why);
     if (status != VIT_OK)
         print_error("%s\n", why.text);
     assert_int_equal(status, VIT_OK);

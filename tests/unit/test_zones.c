@@ -54,7 +54,9 @@ static void begin(fixture *f, room *r, uint32_t lights) {
     for (uint32_t i = 0; i < lights; i++)
         f->gives[i] = true;
     f->t = (tracks){.cameras = f->cameras, .lights = f->lights, .light_count = lights};
-    assert_int_equal(dark_sides_find(&r->m, &f->t, 1, false, &r->g, 2, NULL, NULL, &found, &why), VIT_OK);
+    assert_int_equal(dark_sides_find(&(const dark_sides_input){.model = &r->m, .tracks = &f->t, .frames = 1, .threads = 2},
+                                     &r->g, &found, &why),
+                     VIT_OK);
     f->scene = (vit_scene){.width = PIXELS,
                            .height = PIXELS,
                            .bounces = r->in.bounces,

@@ -51,11 +51,20 @@ static vit_status make_shape(bake *k, vit_text *why) {
     for (uint32_t i = 0; status == VIT_OK && i < 2 * k->m.triangles; i++)
         k->r.area += (double)side_area(&k->g, i); /* for the radius */
     if (status == VIT_OK && k->whole)
-        status = dark_sides_find(&k->m, &k->t, 1, false, &k->g, 1, NULL, NULL, &k->r, why);
+        status = dark_sides_find(&(const dark_sides_input){.model = &k->m, .tracks = &k->t, .frames = 1, .threads = 1}, &k->g,
+                                 &k->r, why);
     if (status == VIT_OK)
         status = atlas_pack(&k->m, &k->a, why);
-    return status == VIT_OK ? plan_make(&k->s, &k->m, &k->t, &k->a, &k->b, &k->g, &k->r, &(const environment){0}, 1, &k->p, why)
-                            : status;
+    const plan_input in = {.scene = &k->s,
+                           .model = &k->m,
+                           .tracks = &k->t,
+                           .atlas = &k->a,
+                           .bvh = &k->b,
+                           .geometry = &k->g,
+                           .dark_sides = &k->r,
+                           .sky = &(const environment){0},
+                           .threads = 1};
+    return status == VIT_OK ? plan_make(&in, &k->p, why) : status;
 }
 
 static vit_status make_photons(bake *k, vit_text *why) {

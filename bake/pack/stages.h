@@ -1,0 +1,46 @@
+/* The stages of a bake, in the order in which pipeline.c calls them, and what they share. Private to bake/pack. */
+#ifndef VIT_PACK_STAGES_H
+#define VIT_PACK_STAGES_H
+
+#include "pack/bounds.h"
+#include "pack/pipeline.h"
+
+/* A pack on its way. */
+typedef struct bake {
+    pipeline *p;
+    const pipeline_choice *choice;
+    scene scene; /* the pipeline's with the choice's quality and size; borrows its lists */
+    pipeline_packed *out;
+    bounds_input bounds; /* of `out` */
+    bool again;          /* photons are to be traced again for what has just changed */
+} bake;
+
+/* Of the scene alone, once: stages_scene.c. */
+vit_status stage_import(pipeline *p, vit_text *why);
+vit_status stage_tracks(pipeline *p, vit_text *why);
+vit_status stage_area_light_planes(pipeline *p, vit_text *why);
+vit_status stage_glass_inset(pipeline *p, vit_text *why);
+vit_status stage_shape(pipeline *p, vit_text *why);
+vit_status stage_atlas(pipeline *p, vit_text *why);
+vit_status stage_sky(pipeline *p, vit_text *why);
+
+/* Of one pack. stages_scene.c: the shape in fewer bits. */
+vit_status stage_choose_shape(bake *b, vit_text *why);
+/* stages_light.c. */
+vit_status stage_plan(bake *b, vit_text *why);
+vit_status stage_guiding(bake *b, vit_text *why);
+vit_status stage_area_lights(bake *b, vit_text *why);
+vit_status stage_photons(bake *b, vit_text *why);
+vit_status stage_radius(bake *b, vit_text *why);
+vit_status stage_zones(bake *b, vit_text *why);
+/* stages_bounds.c. */
+vit_status stage_frames(bake *b, vit_text *why);
+vit_status stage_bounds(bake *b, vit_text *why);
+vit_status stage_assemble(bake *b, vit_text *why);
+
+/* Points out->sections and b->bounds at what there is by now. */
+void stages_point(bake *b);
+vit_status out_of_memory(vit_text *why);
+void stages_step(void *user, double fraction); /* user: a progress */
+
+#endif

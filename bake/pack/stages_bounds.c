@@ -1,0 +1,78 @@
+/* Stages that play the path: its frames, what none of them exceeds, effects that rays met; and the pack's bytes. */
+#include "pack/stages.h"
+#include <stdlib.h>
+
+static void measuring(void *user, const char *stage, double fraction) {
+    progress *p = user;
+    if (p->stage != stage)
+        progress_stage(p, stage);
+    progress_step(p, fraction);
+}
+
+void stages_point(bake *b) {
+    const pipeline *p = b->p;
+    pipeline_packed *out = b->out;
+    out->sections = (pack_sections){.data = {[VIT_SECTION_META] = &out->plan.scene,
+                                             [VIT_SECTION_CAMS] = out->tracks.cameras,
+                                             [VIT_SECTION_LITE] = out->tracks.lights,
+                                             [VIT_SECTION_GEOM] = out->geometry->triangles,
+                                             [VIT_SECTION_ATTR] = out->geometry->attributes,
+                                             [VIT_SECTION_BVHN] = out->bvh->nodes,
+                                             [VIT_SECTION_MATL] = out->plan.materials,
+                                             [VIT_SECTION_TEXR] = p->atlas.textures,
+                                             [VIT_SECTION_MIPS] = p->atlas.mips,
+                                             [VIT_SECTION_ATLS] = p->atlas.texels,
+                                             [VIT_SECTION_SIDE] = out->cells.sides,
+                                             [VIT_SECTION_CELL] = out->cells.cells,
+                                             [VIT_SECTION_EMIT] = out->area_lights,
+                                             [VIT_SECTION_SKYT] = p->sky.texels,
+                                             [VIT_SECTION_PHOT] = out->photons,
+                                             [VIT_SECTION_GOLD] = out->gold}};
+    b->bounds = (bounds_input){.sections = &out->sections,
+                               .scene = &out->plan.scene,
+                               .gold = out->gold,
+                               .device = p->device,
+                               .threads = p->threads,
+                               .all_formats = p->all_formats,
+                               .progress = measuring,
+                               .user = p->progress};
+}
+
+/* Keeps the chosen frames' cameras and lights. */
+vit_status stage_frames(bake *b, vit_text *why) {
+    const pipeline_choice *c = b->choice;
+    tracks *t = &b->out->tracks;
+    (void)why;
+    if (!c->frames)
+        return VIT_OK;
+    for (uint32_t i = 0; i < c->frame_count; i++) { /* ascending: a frame moves towards the front */
+        t->cameras[i] = t->cameras[c->frames[i]];
+        for (uint32_t k = 0; k < t->light_count; k++)
+            t->lights[(size_t)i * t->light_count + k] = t->lights[(size_t)c->frames[i] * t->light_count + k];
+    }
+    b->out->plan.scene.frames = c->frame_count;
+    return VIT_OK;
+}
+
+/* Plays the path: bounds and golden hashes; what rays met settles the effects. */
+vit_status stage_bounds(bake *b, vit_text *why) {
+    pipeline_packed *out = b->out;
+    vit_scene *s = &out->plan.scene;
+    effects_reached *reached = calloc(EFFECTS_RECORDS(s->materials), sizeof *reached);
+    if (!reached)
+        return out_of_memory(why);
+    stages_point(b);
+    if ((s->effects | out->plan.effects.forced_off) & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)))
+        b->bounds.reached = reached; /* else there is nothing to find out */
+    const vit_status status = bounds_measure(&b->bounds, why);
+    for (uint32_t i = 0; i < s->materials && status == VIT_OK; i++)
+        reached[i].how |= out->met && out->met[i] ? EFFECTS_REACHED_BAKED : 0;
+    if (status == VIT_OK)
+        effects_settle(s, out->model, out->plan.materials, reached, &out->plan.effects);
+    free(reached);
+    return status;
+}
+
+vit_status stage_assemble(bake *b, vit_text *why) {
+    return pack_assemble(&b->out->sections, &b->out->bytes, &b->out->size, why);
+}
