@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Work units of one of a kind: about tenths of a nanosecond. Whole numbers, so that sums are equal everywhere; how they were
- * found: README.md, "Fit". */
+ * found: bake/cost/README.md, "Fit". */
 static const struct {
     const char *kind;
     uint64_t units;

@@ -1,6 +1,6 @@
 /* What must be timed to find the most accurate setting within so many milliseconds. Errors and work are known and exact; work
- * foretells times up to a factor (README.md, "Fit"), so what is wrong by more than a setting that fits, or would take far too
- * long, need not be timed, nor need its kernels be compiled. */
+ * foretells times up to a factor (bake/cost/README.md, "Fit"), so what is wrong by more than a setting that fits, or would take
+ * far too long, need not be timed, nor need its kernels be compiled. */
 #include "cost/sweep_parts.h"
 #include <math.h>
 #include <stdio.h>

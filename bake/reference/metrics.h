@@ -1,4 +1,4 @@
-/* metrics.c: how far a picture is from the reference. Formulas and sources: bake/cost/README.md. */
+/* metrics.c: how far a picture is from the reference. Formulas and sources: bake/reference/README.md. */
 #ifndef VIT_COST_METRICS_H
 #define VIT_COST_METRICS_H
 

@@ -8,7 +8,7 @@
  * shading normal, from the front of its geometric side; all reflections are about geometric normals, as photons reflect, but
  * mirrors' and glass's. Phong lobes reflect all light by their BRDF. Ambient light is added at view samples. Dark sides
  * (dark_sides.h) are an approximation of the runtime's and are not made; nor is a view sample's albedo or normal rounded.
- * Radiance times the camera's exposure, as in RGBA32F frames; sums in double. Method and sources: bake/cost/README.md. */
+ * Radiance times the camera's exposure, as in RGBA32F frames; sums in double. Method and sources: bake/reference/README.md. */
 #ifndef VIT_COST_REFERENCE_H
 #define VIT_COST_REFERENCE_H
 

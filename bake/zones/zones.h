@@ -1,4 +1,4 @@
-/* zones.c: what a fixed scene lets us bake against the errors of photon splatting (README, "Zones and areas"): which photons
+/* zones.c: what a fixed scene lets us bake against the errors of photon splatting (README.md, "Zones and areas"): which photons
  * may count for which samples, and how much of the photon kernel lies on surfaces there. */
 #ifndef VIT_BAKE_ZONES_H
 #define VIT_BAKE_ZONES_H
