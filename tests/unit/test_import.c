@@ -746,16 +746,6 @@ static void a_missing_mesh_is_refused(void **state) {
     refuse(FOLDER, false, "is a folder");
 }
 
-/* Two named groups of a RAW file give Assimp's root a child that is NULL. */
-static void a_list_with_holes_has_none_afterwards(void **state) {
-    model m;
-    (void)state;
-    put(FILE_OF("groups.raw"), "GroupA\n0 0 0 1 0 0 0 1 0\nGroupB\n1 0 0 1 1 0 0 1 0\n");
-    import_good(FILE_OF("groups.raw"), &m);
-    assert_int_equal(m.triangles, 2);
-    model_free(&m);
-}
-
 static void a_missing_material_file_is_a_warning_or_an_error_if_strict(void **state) {
     model m;
     (void)state;
@@ -781,34 +771,6 @@ static void files_of_no_known_kind_are_refused(void **state) {
     refuse(FILE_OF("a.xyz"), false, "");
     refuse(FILE_OF("bad.gltf"), false, "");
     refuse(FILE_OF("bad.glb"), false, "");
-}
-
-/* Assimp 5.2.5 would read these for ever. */
-#define PLY_QUADS(faces)                                                                                                       \
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"                          \
-    "element face 2\n"                                                                                                         \
-    "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n" faces
-
-static void a_polygon_with_a_bad_index_is_dropped_with_a_warning(void **state) {
-    model m;
-    (void)state;
-    put(FILE_OF("quads.ply"), PLY_QUADS("4 0 1 2 3\n4 0 1 2 77\n"));
-    import_good(FILE_OF("quads.ply"), &m);
-    assert_true(m.triangles == 2 && m.not_triangles == 0 && m.warnings == 1);
-    assert_non_null(strstr(last_warning, "1 polygons with an index out of range"));
-    model_free(&m);
-    put(FILE_OF("quads.ply"), PLY_QUADS("4 0 1 2 99\n4 0 1 2 77\n"));
-    refuse(FILE_OF("quads.ply"), false, "has no triangle, and no polygon of at most 1024 corners");
-}
-
-/* Assimp takes it for a polygon and ends the process when it has none to cut. */
-static void a_face_without_corners_beside_a_triangle_is_left_out(void **state) {
-    model m;
-    (void)state;
-    put(FILE_OF("quads.ply"), PLY_QUADS("3 0 1 2\n0\n"));
-    import_good(FILE_OF("quads.ply"), &m);
-    assert_true(m.triangles == 1 && m.warnings == 0);
-    model_free(&m);
 }
 
 /* In a tilted plane, from either side: n - 2 triangles, which cover the area of the outline once. */
@@ -1023,7 +985,6 @@ int main(void) {
         T(triangles_without_area_are_dropped_and_counted),
         T(triangles_that_are_not_finite_are_dropped_with_one_warning),
         T(triangles_that_go_too_far_out_are_dropped_with_one_warning),
-        T(a_list_with_holes_has_none_afterwards),
         T(points_and_lines_are_dropped_and_counted),
         T(a_ply_without_normals_is_imported),
         T(importing_twice_gives_the_same_bytes),
@@ -1035,8 +996,6 @@ int main(void) {
         T(a_missing_mesh_is_refused),
         T(a_missing_material_file_is_a_warning_or_an_error_if_strict),
         T(files_of_no_known_kind_are_refused),
-        T(a_polygon_with_a_bad_index_is_dropped_with_a_warning),
-        T(a_face_without_corners_beside_a_triangle_is_left_out),
         T(polygons_that_are_not_convex_are_cut_whole),
         T(polygons_with_nearly_straight_corners_are_cut_whole),
         T(a_ply_with_a_broken_header_is_refused),
