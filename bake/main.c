@@ -154,8 +154,8 @@ static vit_status explain(bake *b, vit_text *why) {
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height,
            100 * p->atlas.occupancy);
     if (s->effects & VIT_BIT(PHOTONS))
-        printf("  photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked, s->bounces,
-               (double)s->radius);
+        printf("  indirect light by photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked,
+               s->bounces, (double)s->radius);
     if (b->packed.guiding)
         printf("  guided photons: where paths light what is seen, one stands for %.3g even ones\n", b->packed.guided_gain);
     if (s->cells > 0)

@@ -110,6 +110,7 @@ typedef struct vit_requirements {
  * and `lanes`. */
 typedef struct vit_statistics {
     uint64_t frames;                                         /* frames rendered since vit_open */
+    const char *indirect;                                    /* the effect that makes indirect light; NULL: there is none */
     uint32_t nodes, clusters, photons, list, pairs, largest; /* last frame: see VIT_COUNTERS in records.clh */
     uint32_t slice_min, slice_max;                           /* last frame */
     uint32_t max_nodes, max_list;                            /* largest wish of any frame since vit_open */

@@ -19,7 +19,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 4u
+#define VIT_PACK_VERSION 5u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
@@ -93,6 +93,13 @@ static inline vit_u32 *vit_gold_hash(vit_gold *g, vit_format format) {
 #undef X
     }
     return 0;
+}
+
+/* The effects that make indirect light, of which a pack with the effect INDIRECT has at least one. */
+static inline uint64_t vit_indirect_makers(void) {
+#define X(maker, family) | VIT_BIT(maker)
+    return 0u VIT_INDIRECT_MAKERS(X);
+#undef X
 }
 
 /* The effect `bit` and all that make no sense without it. */

@@ -1,5 +1,5 @@
-/* The passes estimate_list and estimate_buckets: irradiance from photons, a density estimate: E = sum of Phi K(d),
- * K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons that arrive from the front. METHODS.md, "Density estimate" (21).
+/* Irradiance of view samples from photons, from lists or buckets; indirect.cl calls it. A density estimate: E = sum of Phi
+ * K(d), K(d) = 2 / (pi r^2) (1 - d^2 / r^2), over photons that arrive from the front. METHODS.md, "Density estimate" (21).
  * vit_photon.power is Phi 2 / (pi r^2). */
 
 /* What a sample knows besides its place: which zones' photons count for it, and what its sum is divided by, the part of the
@@ -87,24 +87,6 @@ static inline lv3 estimate_gather(ESTIMATE_PARAMETERS, li key, const estimate_sa
     }
     return total;
 }
-
-#if VIT_WITH(LIST) && VIT_WITH_DENSE
-kernel void estimate_list(ESTIMATE_PARAMETERS, global const uint *keys, global const float *position, global const uint *normal,
-                          ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS) {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
-        return;
-    li key = L_AS_INT(L_LOAD(keys + first));
-    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
-    WORK_BEGIN
-    if (l_any(L_GE(key, L_I(0)))) {
-        estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
-        total = estimate_gather(ESTIMATE_ARGUMENTS, key, &sample WORK_PASS);
-    }
-    lv3_store_planes(total, indirect, n, first);
-    WORK_END
-}
-#endif
 
 #define BUCKET_PARAMETERS                                                                                                      \
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
@@ -226,22 +208,3 @@ static inline lv3 bucket_gather(BUCKET_PARAMETERS, li key, const estimate_sample
         return bucket_gather_raw(BUCKET_ARGUMENTS, key, sample WORK_PASS);
     return bucket_gather_smooth(BUCKET_ARGUMENTS, key, sample, x, y WORK_PASS);
 }
-
-#if VIT_WITH(BUCKETS) && VIT_WITH_DENSE
-kernel void estimate_buckets(BUCKET_PARAMETERS, global const uint *keys, global const float *position,
-                             global const uint *normal, ESTIMATE_BAKED, global float *indirect WORK_PARAMETERS) {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n)
-        return;
-    li key = L_AS_INT(L_LOAD(keys + first)), x, y;
-    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
-    l_pixel(scene, first, &x, &y);
-    WORK_BEGIN
-    if (l_any(L_GE(key, L_I(0)))) {
-        estimate_sample sample = estimate_load(scene, first, position, normal, accept, inverse_area);
-        total = bucket_gather(BUCKET_ARGUMENTS, key, &sample, x, y WORK_PASS);
-    }
-    lv3_store_planes(total, indirect, n, first);
-    WORK_END
-}
-#endif

@@ -22,7 +22,7 @@ static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo,
     int light = view_light((vit_view)VIT_VIEW);
     if (light & VIT_SHOWS_DIRECT)
         c = lv3_load_planes(direct, n, first);
-    if (VIT_EFFECT_PHOTONS && (light & VIT_SHOWS_INDIRECT)) {
+    if (VIT_EFFECT_INDIRECT && (light & VIT_SHOWS_INDIRECT)) {
         lv3 a = l_decode_albedo(L_LOAD(albedo + first)), e = lv3_load_planes(indirect, n, first);
         if (VIT_EFFECT_SPECULAR) /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
             a = lv3_along(a, l_decode_albedo(L_LOAD(specular + first)), L_F(1));

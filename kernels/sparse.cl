@@ -25,20 +25,10 @@ static inline li sparse_sample(li i) {
            (at & (SPARSE_ROW - 1)) * SPARSE_STEP;
 }
 
-/* List or buckets, whichever there are; `slots` are coarse samples where `flags` is NULL, else the view samples flagged there.
- */
-#define SPARSE_PARAMETERS                                                                                                      \
-    global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
-        global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,      \
-        global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,      \
-        global const float *position, global const uint *normal, ESTIMATE_BAKED
-#define SPARSE_ARGUMENTS                                                                                                       \
-    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position,   \
-        normal, accept, inverse_area
-
-/* Estimates the first `used` of the lanes' slots, which have this key, and stores them. */
-static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, global float *out, const int *slots, uint used,
-                                   int key WORK_PASSED) {
+/* Estimates the first `used` of the lanes' slots, which have this key, and stores them. Slots are coarse samples where `flags`
+ * is NULL, else the view samples flagged there. */
+static inline void sparse_estimate(INDIRECT_PARAMETERS, global const uint *flags, global float *out, const int *slots,
+                                   uint used, int key WORK_PASSED) {
     uint n = scene->samples;
     li slot = L_LOAD(slots), sample = flags ? slot : sparse_sample(slot);
     estimate_sample found = estimate_load_at(scene, sample, position, normal, accept, inverse_area);
@@ -46,14 +36,7 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
     if (!flags)
         found.inverse_area = L_F(1);
     li keyed = l_sel_i(L_LT(L_INDEX, L_I((int)used)), L_I(key), L_I(-1));
-    lv3 e;
-    if (VIT_EFFECT_LIST)
-        e = estimate_gather(ESTIMATE_ARGUMENTS, keyed, &found WORK_PASS);
-    else {
-        li x, y;
-        l_pixel_of(scene, sample, &x, &y);
-        e = bucket_gather(BUCKET_ARGUMENTS, keyed, &found, x, y WORK_PASS);
-    }
+    lv3 e = indirect_gather(INDIRECT_ARGUMENTS, keyed, &found, sample WORK_PASS);
     float value[SPARSE_FLOATS][VIT_LANES];
     L_STORE(e.x, value[0]);
     L_STORE(e.y, value[1]);
@@ -74,19 +57,20 @@ static inline void sparse_estimate(SPARSE_PARAMETERS, global const uint *flags, 
 }
 
 /* Keys of the slots from `first` on; negative beyond `end` and where nothing is to be estimated. */
-static inline li sparse_keys(global const uint *keys, global const uint *flags, uint first, uint end) {
+static inline li sparse_keys(global const uint *keys, global const uint *albedo, global const uint *flags, uint first,
+                             uint end) {
     li slot = (int)first + L_INDEX;
     if (flags) { /* end is a multiple of 16 */
         li flagged = (L_I((int)(flags[first / 16] >> (first & 15))) >> L_INDEX) & 1;
-        return l_any(flagged) ? L_AS_INT(L_LOAD(keys + first)) | (flagged - 1) : L_I(-1);
+        return l_any(flagged) ? indirect_keys(keys, albedo, first) | (flagged - 1) : L_I(-1);
     }
-    li key = L_AS_INT(l_gather_u(keys, sparse_sample(min(slot, L_I((int)(end - 1))))));
+    li key = indirect_keys_at(keys, albedo, sparse_sample(min(slot, L_I((int)(end - 1)))));
     return l_sel_i(L_LT(slot, L_I((int)end)), key, L_I(-1));
 }
 
-/* All slots of a tile, those of one cluster together: lanes that share a list take it in one go. Which lanes go together
+/* All slots of a tile, those of one key together: lanes that share a list take it in one go. Which lanes go together
  * changes no bit. */
-static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, global float *out, uint tile,
+static inline void sparse_tile(INDIRECT_PARAMETERS, global const uint *flags, global float *out, uint tile,
                                uint slots WORK_PASSED) {
     uint begin = tile * slots, end = begin + slots;
     for (int key = 0x7fffffff, next; key >= 0; key = next) { /* descending; the first round only looks for the greatest */
@@ -94,13 +78,13 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
         uint found = 0;
         li below = L_I(-1);
         for (uint first = begin; first < end; first += VIT_LANES) {
-            li k = sparse_keys(keys, flags, first, end);
+            li k = sparse_keys(keys, albedo, flags, first, end);
             below = max(below, l_sel_i(L_LT(k, L_I(key)), k, L_I(-1)));
             for (uint hits = l_bits(L_EQ(k, L_I(key))); hits != 0; hits &= hits - 1)
                 mine[found++] = (int)(first + 31u - (uint)clz(hits & (~hits + 1u)));
             if (found < VIT_LANES)
                 continue;
-            sparse_estimate(SPARSE_ARGUMENTS, flags, out, mine, VIT_LANES, key WORK_PASS);
+            sparse_estimate(INDIRECT_ARGUMENTS, flags, out, mine, VIT_LANES, key WORK_PASS);
             found -= VIT_LANES;
             for (uint i = 0; i < found; i++)
                 mine[i] = mine[VIT_LANES + i];
@@ -108,7 +92,7 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
         if (found > 0) {
             for (uint i = found; i < VIT_LANES; i++)
                 mine[i] = mine[0];
-            sparse_estimate(SPARSE_ARGUMENTS, flags, out, mine, found, key WORK_PASS);
+            sparse_estimate(INDIRECT_ARGUMENTS, flags, out, mine, found, key WORK_PASS);
         }
         next = l_reduce_max(below);
     }
@@ -116,7 +100,7 @@ static inline void sparse_tile(SPARSE_PARAMETERS, global const uint *flags, glob
 
 #if VIT_WITH(SPARSE)
 /* The coarse samples: a work-item's are those of a tile, or with one lane, where nothing need go together, a single one. */
-kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMETERS) {
+kernel void estimate_sparse(INDIRECT_PARAMETERS, global float *coarse WORK_PARAMETERS) {
     uint id = (uint)get_global_id(0), slots = scene->tile * scene->tile / (16u / SPARSE_BLOCK),
          count = VIT_LANES == 1 ? 1 : slots;
     if (id >= sparse_count(scene) / count)
@@ -125,17 +109,17 @@ kernel void estimate_sparse(SPARSE_PARAMETERS, global float *coarse WORK_PARAMET
         for (uint k = 0; k < SPARSE_FLOATS; k++)
             coarse[(size_t)i * SPARSE_FLOATS + k] = k < 3 ? -1.0f : 0.0f;
     WORK_BEGIN
-    sparse_tile(SPARSE_ARGUMENTS, (global const uint *)0, coarse, id, count WORK_PASS);
+    sparse_tile(INDIRECT_ARGUMENTS, (global const uint *)0, coarse, id, count WORK_PASS);
     WORK_END
 }
 
 /* The samples that `interpolate` flagged. */
-kernel void estimate_rest(SPARSE_PARAMETERS, global const uint *flags, global float *indirect WORK_PARAMETERS) {
+kernel void estimate_rest(INDIRECT_PARAMETERS, global const uint *flags, global float *indirect WORK_PARAMETERS) {
     uint id = (uint)get_global_id(0), count = VIT_LANES == 1 ? 1 : scene->tile * scene->tile;
     if (id >= scene->samples / count)
         return;
     WORK_BEGIN
-    sparse_tile(SPARSE_ARGUMENTS, flags, indirect, id, count WORK_PASS);
+    sparse_tile(INDIRECT_ARGUMENTS, flags, indirect, id, count WORK_PASS);
     WORK_END
 }
 
@@ -200,7 +184,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         area_lights |= l_bits(sparse_area_lights(L_LOAD(albedo + block * 16 + at))) << at;
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
-        li has = L_GE(L_AS_INT(L_LOAD(keys + first)), L_I(0)), pixel = (int)at + L_INDEX;
+        li has = L_GE(indirect_keys(keys, albedo, first), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)),

@@ -62,7 +62,7 @@ static vit_launch launch_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_WORK;
     if (info->record_reach)
         l.effects |= ON_REACH;
-    if ((s->effects & ON(PHOTONS)) && !(s->effects & ON(SPARSE)))
+    if ((s->effects & ON(INDIRECT)) && !(s->effects & ON(SPARSE)))
         l.effects |= ON_DENSE;
     if (s->effects & (ON(MIRROR) | ON(GLASS)))
         l.effects |= ON_CHAINS;

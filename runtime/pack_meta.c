@@ -99,6 +99,8 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why, "section META: effects NEAREST and TRILINEAR exclude each other");
     if (photons && !list && !buckets)
         return vit_pack_refuse(why, "section META: effect PHOTONS without LIST or BUCKETS");
+    if ((e & VIT_BIT(INDIRECT)) && !(e & vit_indirect_makers()))
+        return vit_pack_refuse(why, "section META: effect INDIRECT without what makes indirect light");
     if ((s->lights > 0) != ((e & VIT_BIT(LIGHTS)) != 0))
         return vit_pack_refuse(why, "section META: %u lights contradict the effect LIGHTS", s->lights);
     if ((s->paths > 0) != ((e & VIT_BIT(TRACED)) != 0))

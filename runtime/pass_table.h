@@ -13,9 +13,10 @@
 #define ARGS_RAYS ARGS_SURFACE, B(bvh)
 #define ARGS_WORK B(work), V(pass) /* last, in passes that count on the device */
 #define ARGS_ESTIMATE B(masks), B(prefix), B(list_first), B(list_count), B(list), B(photons)
-#define ARGS_SPARSE                                                                                                            \
-    B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(position), B(normal),       \
-        B(accept), B(inverse_area)
+/* What the makers of indirect light read: of all of them (kernels/indirect.cl, INDIRECT_PARAMETERS). */
+#define ARGS_INDIRECT                                                                                                          \
+    B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(albedo), B(position),       \
+        B(normal), B(accept), B(inverse_area)
 
 #define ARGS_ROUND B(cameras), V(frame), V(round), V(layers), B(active)
 
@@ -62,15 +63,11 @@
     X(splat_buckets, ON(BUCKETS), EACH, GROUP_PER_LEVEL_NODE, LAST, W(buckets) | W(list_count) | W(counters), B(scene),        \
       V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds), B(list_first),        \
       B(list_count), B(list), B(counters), B(buckets), ARGS_WORK)                                                              \
-    X(estimate_list, ON(LIST) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), B(scene), V(max_nodes), ARGS_ESTIMATE, B(keys), \
-      B(position), B(normal), B(accept), B(inverse_area), B(indirect), ARGS_WORK)                                              \
-    X(estimate_buckets, ON(BUCKETS) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), B(scene), B(cameras), V(frame),           \
-      V(max_nodes), B(masks), B(prefix), B(bounds), B(buckets), B(keys), B(position), B(normal), B(accept), B(inverse_area),   \
-      B(indirect), ARGS_WORK)                                                                                                  \
-    X(estimate_sparse, ON(SPARSE), EACH, PER_COARSE, ONCE, W(coarse), ARGS_SPARSE, B(coarse), ARGS_WORK)                       \
+    X(estimate_all, ON(INDIRECT) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), ARGS_INDIRECT, B(indirect), ARGS_WORK)       \
+    X(estimate_sparse, ON(SPARSE), EACH, PER_COARSE, ONCE, W(coarse), ARGS_INDIRECT, B(coarse), ARGS_WORK)                     \
     X(interpolate, ON(SPARSE), EACH, PER_BLOCK, ONCE, W(indirect) | W(flags), B(scene), B(cameras), V(frame), B(keys),         \
       B(position), B(normal), B(albedo), B(accept), B(inverse_area), B(coarse), B(indirect), B(flags))                         \
-    X(estimate_rest, ON(SPARSE), EACH, PER_REST, ONCE, W(indirect), ARGS_SPARSE, B(flags), B(indirect), ARGS_WORK)             \
+    X(estimate_rest, ON(SPARSE), EACH, PER_REST, ONCE, W(indirect), ARGS_INDIRECT, B(flags), B(indirect), ARGS_WORK)           \
     X(dots_clear, ON_DOTS, FIRST, PER_PIXEL, ONCE, W(dots), B(scene), B(dots))                                                 \
     X(photon_dots, ON_DOTS, FIRST, PER_PHOTON, ONCE, W(dots), B(scene), B(cameras), V(frame), B(photons), B(hit_distance),     \
       B(dots))                                                                                                                 \

@@ -87,15 +87,22 @@ uint32_t vit_buffer_word(uint32_t buffer, const vit_launch *l) {
     return buffer == B_position && (l->effects & ON(SMALL_SAMPLES)) ? 2 : 4;
 }
 
-const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l) {
-    uint64_t by = buffer_when[buffer] & l->effects;
-    if (buffer_when[buffer] == ALWAYS)
-        return "always";
+const char *vit_effect_first(uint64_t effects) {
 #define X(bit, name, macro, why)                                                                                               \
-    if (by & ON(macro))                                                                                                        \
+    if (effects & ON(macro))                                                                                                   \
         return name;
     VIT_EFFECTS(X)
 #undef X
+    return NULL;
+}
+
+const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l) {
+    const uint64_t by = buffer_when[buffer] & l->effects;
+    const char *of_pack = vit_effect_first(by);
+    if (buffer_when[buffer] == ALWAYS)
+        return "always";
+    if (of_pack)
+        return of_pack;
     if (by & ON_CHAINS)
         return l->effects & ON(MIRROR) ? "mirror" : "glass";
     if (by & ON_FILM)

@@ -10,7 +10,7 @@
 /* Not effects of the pack: */
 #define ON_DOTS ((uint64_t)1 << 63)   /* the view `photons` */
 #define ON_WORK ((uint64_t)1 << 62)   /* vit_open_info.count_work */
-#define ON_DENSE ((uint64_t)1 << 61)  /* indirect light is estimated at every sample */
+#define ON_DENSE ((uint64_t)1 << 61)  /* indirect light is estimated at every sample: estimate_all */
 #define ON_FILM ((uint64_t)1 << 60)   /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
 #define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
 #define ON_REACH ((uint64_t)1 << 58)  /* vit_open_info.record_reach */
@@ -90,7 +90,7 @@ typedef struct vit_launch {
     X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                              \
     X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                         \
     X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                            \
-    X(indirect, ON(PHOTONS), NONE, (uint64_t)s->samples * 12)                                                                  \
+    X(indirect, ON(INDIRECT), NONE, (uint64_t)s->samples * 12)                                                                 \
     X(dots, ON_DOTS, NONE, (uint64_t)s->width * s->height * 4)                                                                 \
     X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                       \
     X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                          \
@@ -181,6 +181,8 @@ int vit_buffer_called(uint32_t buffer, const vit_launch *l);
 uint64_t vit_buffer_bytes(uint32_t buffer, const vit_scene *s, const vit_launch *l);
 /* Bytes of the words that the buffer is made of: 4, or 2 where it holds half words. */
 uint32_t vit_buffer_word(uint32_t buffer, const vit_launch *l);
+/* Name of the first of these effects of the pack; NULL: none. */
+const char *vit_effect_first(uint64_t effects);
 /* Name of an effect that calls for the buffer: "always", or of the first. */
 const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l);
 /* Bytes of a pixel, and of the words that it is made of. */

@@ -30,6 +30,7 @@ vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why) {
     const vit_photon *baked = v->pack.section[VIT_SECTION_PHOT];
     out->frames = v->frames;
     out->lanes = v->launch.lanes;
+    out->indirect = vit_effect_first(v->launch.effects & vit_indirect_makers());
     out->nodes = c[VIT_COUNTER_nodes];
     out->clusters = c[VIT_COUNTER_clusters];
     out->photons = c[VIT_COUNTER_photons];

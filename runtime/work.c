@@ -34,8 +34,7 @@
     X(splat_write, (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + 4) * z->listed + 4 * z->entries)                             \
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
-    X(estimate_list, (4 + z->position + 4 + z->baked + 12) * z->samples + (4 + sizeof(vit_photon)) * w[VIT_WORK_evaluations])  \
-    X(estimate_buckets, (4 + z->position + 4 + z->baked + 12) * z->samples + (16 + z->corner) * w[VIT_WORK_evaluations])       \
+    X(estimate_all, (4 + z->position + 4 + z->baked + 12) * z->samples + z->evaluation * w[VIT_WORK_evaluations])              \
     X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
     X(interpolate, (4 + z->position + 4 + z->lamps + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)            \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
@@ -75,13 +74,14 @@ typedef struct sizes {
 
 /* What resolve reads a sample: the hit, and what the view shows. */
 static uint64_t shown_bytes(const vit_launch *l) {
-    const int light = vit_view_light(l->view), photons = (l->effects & ON(PHOTONS)) != 0;
+    const int light = vit_view_light(l->view), photons = (l->effects & ON(PHOTONS)) != 0,
+              indirect = (l->effects & ON(INDIRECT)) != 0;
     switch (l->view) {
     case VIT_VIEW_final:
     case VIT_VIEW_direct:
     case VIT_VIEW_indirect:
     case VIT_VIEW_photons: /* with light that comes indirectly goes the albedo */
-        return 4 + (light & VIT_SHOWS_DIRECT ? 12u : 0u) + (photons && (light & VIT_SHOWS_INDIRECT) ? 4u + 12u : 0u);
+        return 4 + (light & VIT_SHOWS_DIRECT ? 12u : 0u) + (indirect && (light & VIT_SHOWS_INDIRECT) ? 4u + 12u : 0u);
     case VIT_VIEW_clusters: /* key, normal */
         return photons ? 4 + 4 + 4 : 4;
     case VIT_VIEW_heat: /* key; the cluster's mask, prefix and count */

@@ -105,11 +105,11 @@ static inline void fixture_scene(vit_scene *s) {
                      .frames = FIXTURE_FRAMES,
                      .fps = 30,
                      .tile = 16,
-                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(PHOTONS) |
-                                VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) | VIT_BIT(AREA) | VIT_BIT(SEQUENCE) |
-                                VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) |
-                                VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) |
-                                VIT_BIT(ANTIALIAS),
+                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(INDIRECT) |
+                                VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) | VIT_BIT(AREA) |
+                                VIT_BIT(SEQUENCE) | VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) |
+                                VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) |
+                                VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS),
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,

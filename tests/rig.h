@@ -89,7 +89,7 @@ static inline void rig_photons(rig *r, vit_photon *photons, uint32_t count, floa
     r->photons = photons;
     r->scene.baked = count;
     r->scene.radius = radius;
-    r->scene.effects |= VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
+    r->scene.effects |= VIT_BIT(LIGHTS) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
 }
 
 /* The pack's bytes; free() them. Scenes that say they have lights and have none get a dark one. */

@@ -15,16 +15,18 @@ void check_text(const check_found *f, char *text, size_t room) {
 
 void check_cure(const check_found *f, const scene_quality *q, const plan *p, char *text, size_t room) {
     const uint64_t e = p->scene.effects;
-    const bool photons = (e & VIT_BIT(PHOTONS)) != 0;
+    const bool indirect = (e & VIT_BIT(INDIRECT)) != 0, photons = (e & VIT_BIT(PHOTONS)) != 0;
     text[0] = '\0';
-    const bool leaks = photons && f->indirect - 1 > fmax(MUCH, fabs(f->direct - 1)); /* no direct light is to blame for */
+    const bool leaks = indirect && f->indirect - 1 > fmax(MUCH, fabs(f->direct - 1)); /* no direct light is to blame for */
     if (!leaks && fabs(f->direct - 1) > CHECK_LIMIT / 2 && (e & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))))
         (void)snprintf(text, room, "raise %s",
                        !(e & VIT_BIT(SKY_LIGHT))     ? "light_samples"
                        : !(e & VIT_BIT(AREA_LIGHTS)) ? "sky_samples"
                                                      : "light_samples and sky_samples");
-    else if (!photons)
+    else if (!indirect)
         (void)snprintf(text, room, q->photons > 0 && q->bounces > 1 ? "" : "photons and bounces beyond 1 give indirect light");
+    else if (!photons) /* what follows are their settings */
+        return;
     else if (f->limited < 1 - CHECK_LIMIT / 2 && f->indirect < 1)
         (void)snprintf(text, room, "bounces = %d leaves %.0f %% of the light out: raise it", q->bounces,
                        100 * (1 - f->limited));

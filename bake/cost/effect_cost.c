@@ -27,7 +27,7 @@ vit_status effect_cost_without(const pack_sections *whole, uint64_t effects, voi
     vit_scene s = *all;
     effects_drop(&s, effects);
     if (!(s.effects & SOURCES))
-        effects_drop(&s, VIT_BIT(PHOTONS));
+        effects_drop(&s, VIT_BIT(INDIRECT));
     if (!(s.effects & VIT_BIT(LIGHTS)))
         s.lights = 0;
     if (!(s.effects & VIT_BIT(TRACED)))

@@ -17,12 +17,13 @@ typedef struct effect_costs {
     effect_cost effect[64];      /* by the effect's bit */
 } effect_costs;
 
-/* Effects that are measured: those of materials, sky and pixels (EFFECTS_NAMED), the lights together and the photons. */
-#define EFFECT_COST_MEASURED (EFFECTS_NAMED | VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS))
+/* Effects that are measured: those of materials, sky and pixels (EFFECTS_NAMED), the lights together and indirect
+ * light, whatever makes it. */
+#define EFFECT_COST_MEASURED (EFFECTS_NAMED | VIT_BIT(LIGHTS) | VIT_BIT(INDIRECT))
 
-/* The pack without these effects, and without what then has nothing to do: lights and photons if no source is left. The caller
- * frees *bytes. Bounds stay those of the whole pack, and so do baked photons, as long as there are any: what an effect did to
- * them does not show. */
+/* The pack without these effects, and without what then has nothing to do: lights, and indirect light if no source is left. The
+ * caller frees *bytes. Bounds stay those of the whole pack, and so do baked photons, as long as there are any: what an effect
+ * did to them does not show. */
 vit_status effect_cost_without(const pack_sections *whole, uint64_t effects, void **bytes, size_t *size, vit_text *why);
 
 /* Measures on the device `host`, with exact counts: the same figures on every machine. */

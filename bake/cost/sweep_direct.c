@@ -1,5 +1,5 @@
-/* Direct light of the compared frame. Settings that differ in photons alone share it, and few kernels need to be compiled for
- * it. */
+/* Direct light of the compared frame. Settings that differ in indirect light alone share it, and few kernels need to be
+ * compiled for it. */
 #include "cost/sweep_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ typedef struct direct_settings {
 static uint64_t settings_key(const vit_scene *s) {
     direct_settings d;
     memset(&d, 0, sizeof d);
-    d.effects = s->effects & ~vit_effects_upon(VIT_BIT(PHOTONS));
+    d.effects = s->effects & ~vit_effects_upon(VIT_BIT(INDIRECT));
     d.width = s->width;
     d.height = s->height;
     d.area_samples = s->area_samples;

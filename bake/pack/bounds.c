@@ -67,7 +67,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
     pack_sections sections = *in->sections;
     run r;
     /* 1. the scene with clusters and without light */
-    s.effects = (s.effects & ~vit_effects_upon(VIT_BIT(PHOTONS))) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
+    s.effects = (s.effects & ~vit_effects_upon(VIT_BIT(INDIRECT))) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(LIST);
     s.cells = 0;
     s.paths = 0;
     s.baked = 1;

@@ -37,6 +37,8 @@ void effects_drop(vit_scene *c, uint64_t effects) {
         if (effects >> i & 1)
             all |= vit_effects_upon((uint64_t)1 << i);
     c->effects &= ~all;
+    if (!(c->effects & vit_indirect_makers()))
+        c->effects &= ~vit_effects_upon(VIT_BIT(INDIRECT));
     if (!(c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))))
         c->chain = 0;
     if (!(c->effects & VIT_BIT(ANTIALIAS))) {

@@ -40,7 +40,7 @@ void effects_force(const scene *s, vit_scene *c, effects_decided *out);
 void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
                     effects_decided *out);
 
-/* Takes effects, those that need them and the counts that go with them out of META. */
+/* Takes effects, those that need them and the counts that go with them out of META; indirect light with what makes it. */
 void effects_drop(vit_scene *c, uint64_t effects);
 
 /* What a material calls for where it is met: also CAUSTICS, which needs photons, and AREA_LIGHTS. */

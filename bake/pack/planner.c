@@ -129,7 +129,8 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
     return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
 }
 
-static uint64_t effects_of_quality(const scene *s, const plan *p) {
+/* 0: no light gives photons. */
+static uint64_t effects_of_photons(const scene *s, const plan *p) {
     bool baked = p->area_paths > 0 || p->sky_paths > 0;
     for (uint32_t i = 0; i < p->scene.lights; i++)
         baked |= p->baked_paths[i] > 0;
@@ -144,8 +145,17 @@ static uint64_t effects_of_quality(const scene *s, const plan *p) {
     e |= q->zones ? VIT_BIT(ZONES) : 0;
     e |= q->effective_area && !plan_leaves_area_out(q) ? VIT_BIT(AREA) : 0;
     e |= q->bounce_sequence ? VIT_BIT(SEQUENCE) : 0;
-    e |= q->indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
-    e |= q->indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
+    return e;
+}
+
+/* What makes indirect light, and what any maker of it calls for. */
+static uint64_t effects_of_indirect(const scene *s, const plan *p) {
+    uint64_t e = effects_of_photons(s, p);
+    if (e == 0)
+        return 0;
+    e |= VIT_BIT(INDIRECT);
+    e |= s->quality.indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
+    e |= s->quality.indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
     return e;
 }
 
@@ -251,7 +261,7 @@ vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
         return status;
     }
     /* 3. effects that the scene calls for, then what `effects` of the scene file says of them */
-    c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_quality(s, out);
+    c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_indirect(s, out);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
     if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {

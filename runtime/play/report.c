@@ -110,8 +110,9 @@ static void print_buffers(const vit_requirements *need, FILE *to) {
 void report_print(const report *r, const vit_requirements *need, const vit_statistics *s, uint64_t late, bool paced, FILE *to) {
     print_passes(r, need, to);
     print_buffers(need, to);
+    (void)fprintf(to, "\nindirect light: %s\n", s->indirect ? s->indirect : "none");
     (void)fprintf(to,
-                  "\nlast frame: %u hierarchy nodes, %u clusters, %u photons, %u list entries, %u photon-cluster pairs, "
+                  "last frame: %u hierarchy nodes, %u clusters, %u photons, %u list entries, %u photon-cluster pairs, "
                   "%u photons in the fullest cluster\n",
                   s->nodes, s->clusters, s->photons, s->list, s->pairs, s->largest);
     if (paced)

@@ -114,6 +114,8 @@ static void put_memory(const vit_requirements *n, FILE *to) {
 }
 
 static void put_last(const vit_statistics *s, FILE *to) {
+    const char *quote = s->indirect ? "\"" : "";
+    (void)fprintf(to, "  \"indirect\": %s%s%s,\n", quote, s->indirect ? s->indirect : "null", quote);
     (void)fprintf(to,
                   "  \"last_frame\": {\"nodes\": %u, \"clusters\": %u, \"photons\": %u, \"list\": %u, \"pairs\": %u, "
                   "\"largest\": %u},\n  \"dropped\": {\"samples\": %" PRIu64 ", \"entries\": %" PRIu64 "}\n",

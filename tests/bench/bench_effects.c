@@ -33,7 +33,7 @@ enum {
     "3.2]; } ); }"
 #define MATT "{ name = \"left\"; color = [0.6, 0.3, 0.2]; }, { name = \"right\"; color = [0.2, 0.4, 0.6]; }"
 #define ROWS(X)                                                                                                                \
-    X(PHOTONS, LAMP, MATT, "", "")                                                                                             \
+    X(INDIRECT, LAMP, MATT, "", "")                                                                                            \
     X(SMOOTH, LAMP, MATT, "", "")                                                                                              \
     X(TEXTURES, LAMP, MATT ", { name = \"floor\"; texture = \"wood.png\"; }", "", "")                                          \
     X(SPECULAR, LAMP,                                                                                                          \

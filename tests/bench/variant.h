@@ -56,7 +56,7 @@ typedef struct variant_records {
 static inline void variant_apply(const variant *v, variant_records *r) {
     vit_scene *s = &r->scene;
     s->effects &= ~(v->estimate ? vit_effects_upon(VIT_BIT(LIST)) | vit_effects_upon(VIT_BIT(BUCKETS))
-                                : vit_effects_upon(VIT_BIT(PHOTONS)));
+                                : vit_effects_upon(VIT_BIT(INDIRECT)));
     s->effects |= v->estimate;
     if (v->estimate && v->radius > 0)
         s->radius = (float)v->radius;

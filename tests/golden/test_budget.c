@@ -86,7 +86,7 @@ static void a_report_file_is_json_with_times_work_and_memory(void **state) {
     assert_true(number_after(file, "\"frames\": {\"first\"", "played") == 3.0);
     assert_true(number_after(file, "\"visibility\"", "sum") == 3 * 160 * 120);
     assert_true(number_after(file, "\"buffers\"", "device_bytes") > 0);
-    assert_non_null(strstr(file, "\"photons\""));
+    assert_non_null(strstr(file, "\"indirect\": \"photons\",\n"));
     assert_non_null(strstr(file, "\"box_tests\", \"same\": false"));
     assert_non_null(strstr(file, "\"pairs\", \"same\": true"));
 }
@@ -95,11 +95,14 @@ static void a_report_without_a_file_is_a_table(void **state) {
     (void)state;
     succeeds(test_pack("list"), "--report --frames 0:2");
     assert_non_null(strstr(r.out, "deviation"));
-    assert_non_null(strstr(r.out, "estimate_list"));
+    assert_non_null(strstr(r.out, "\nindirect light: photons\n"));
+    assert_non_null(strstr(r.out, "estimate_all"));
     tool(&r, TOOL_PLAY " --report %s --quiet --frames 0", test_pack("list")); /* the pack is not the report's file */
     tool_succeeds(&r);
-    assert_non_null(strstr(r.out, "estimate_list"));
+    assert_non_null(strstr(r.out, "estimate_all"));
     assert_null(strstr(r.out, "node_tests"));
+    succeeds(test_pack("dark"), "--report --frames 0");
+    assert_non_null(strstr(r.out, "\nindirect light: none\n"));
     succeeds(test_pack("list"), "--count-work --frames 0");
     assert_non_null(strstr(r.out, "node_tests"));
     assert_null(strstr(r.out, "deviation"));
@@ -140,7 +143,7 @@ static void a_time_budget_that_says_nothing_is_a_usage_error(void **state) {
     refuses("nowhere.vit", "--trace --count-work", VIT_USAGE, "--trace");
     refuses("nowhere.vit", "--trace --budget 3", VIT_USAGE, "--trace");
     refuses("nowhere.vit", "--trace --report " JSON, VIT_USAGE, "--trace");
-    refuses(test_pack("list"), "--budget estimate_buckets=3", VIT_USAGE, "'estimate_buckets'");
+    refuses(test_pack("list"), "--budget splat_buckets=3", VIT_USAGE, "'splat_buckets'");
 }
 
 /* Ways of playing that must not show in the counts; PoCL's compiler makes each width and group size anew, so that the first
@@ -206,20 +209,20 @@ static void one_unit_of_work_more_than_allowed_is_named(void **state) {
     succeeds(pack, "--work-budget " WORK);
     assert_string_equal(r.err, "");
 
-    line_of(first_file, "estimate_list evaluations", line, &sum, &most);
-    (void)snprintf(other, sizeof other, "estimate_list evaluations %" PRIu64 " %" PRIu64, sum - 1, most);
+    line_of(first_file, "estimate_all evaluations", line, &sum, &most);
+    (void)snprintf(other, sizeof other, "estimate_all evaluations %" PRIu64 " %" PRIu64, sum - 1, most);
     change(first_file, line, other);
-    refuses(pack, CHANGED, VIT_BUDGET, "pass estimate_list, evaluations: ");
+    refuses(pack, CHANGED, VIT_BUDGET, "pass estimate_all, evaluations: ");
     assert_non_null(strstr(r.err, " allowed, 1 over\n"));
-    (void)snprintf(other, sizeof other, "estimate_list evaluations %" PRIu64 " %" PRIu64, sum, most - 1);
+    (void)snprintf(other, sizeof other, "estimate_all evaluations %" PRIu64 " %" PRIu64, sum, most - 1);
     change(first_file, line, other);
     refuses(pack, CHANGED, VIT_BUDGET, "in the fullest frame");
 
-    (void)snprintf(other, sizeof other, "estimate_list evaluations %" PRIu64 " %" PRIu64, sum + 7, most);
+    (void)snprintf(other, sizeof other, "estimate_all evaluations %" PRIu64 " %" PRIu64, sum + 7, most);
     change(first_file, line, other);
     tool(&r, TOOL_PLAY " %s " CHANGED, pack); /* less work is an improvement */
     tool_succeeds(&r);
-    assert_non_null(strstr(r.err, "less than allowed: pass estimate_list, evaluations: "));
+    assert_non_null(strstr(r.err, "less than allowed: pass estimate_all, evaluations: "));
     assert_non_null(strstr(r.err, "within its budget"));
     succeeds(pack, CHANGED);
     assert_string_equal(r.err, "");

@@ -380,7 +380,7 @@ static void sources_that_are_left_out_give_no_photons(void **state) {
     void *bytes = load(l, &size);
     const played dark = play(bytes, size);
     free(bytes);
-    assert_int_equal(dark.need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(EMISSION)), 0);
+    assert_int_equal(dark.need.effects & (VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(EMISSION)), 0);
     assert_true(scene_lab_said(l, "warning: area-lights is left out: material 'thing' (10 triangles)"));
 }
 
@@ -441,8 +441,8 @@ static void mirrors_and_glass_are_left_out_one_by_one(void **state) {
     }
     adds_what_is_explained(l, "a mirror beside glass", VIT_BIT(MIRROR), &both, &glass);
     adds_what_is_explained(l, "glass beside a mirror", VIT_BIT(GLASS), &both, &mirror);
-    const played photons = play_without(bytes, VIT_BIT(PHOTONS)), dark = play_without(bytes, VIT_BIT(LIGHTS));
-    adds_what_is_explained(l, "photons of a moving light", VIT_BIT(PHOTONS), &both, &photons);
+    const played direct = play_without(bytes, VIT_BIT(INDIRECT)), dark = play_without(bytes, VIT_BIT(LIGHTS));
+    adds_what_is_explained(l, "indirect light by photons of a moving light", VIT_BIT(INDIRECT), &both, &direct);
     adds_what_is_explained(l, "the light", VIT_BIT(LIGHTS), &both, &dark);
     free(bytes);
 }

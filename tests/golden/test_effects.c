@@ -118,7 +118,7 @@ static void without_photons_four_passes_and_no_photon_buffer_are_left(void **sta
     assert_int_equal(need.pass_count, 4);
     for (uint32_t i = 0; i < 4; i++)
         assert_string_equal(need.passes[i], passes[i]);
-    assert_int_equal(need.effects & (VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(BUCKETS)), 0);
+    assert_int_equal(need.effects & vit_effects_upon(VIT_BIT(INDIRECT)), 0);
     static const char buffers[] = " scene cameras lights triangles attributes bvh materials hit_triangle hit_distance position "
                                   "normal albedo direct counters framebuffer ";
     for (uint32_t i = 0; i < need.buffer_count; i++)
@@ -135,16 +135,16 @@ static void photons_add_their_own_buffers_and_leave_the_others_alone(void **stat
         if (there)
             assert_int_equal(there, list.buffers[i].bytes);
         *(there ? &shared : &added) += list.buffers[i].bytes;
-        assert_int_equal(there == 0, is_among(" photons traced-photons list ", list.buffers[i].effect));
+        assert_int_equal(there == 0, is_among(" indirect photons traced-photons list ", list.buffers[i].effect));
     }
     assert_int_equal(shared, dark.device_bytes);
     assert_int_equal(shared + added, list.device_bytes);
 }
 
-static void a_list_has_no_buckets_and_buckets_have_no_list_estimate(void **state) {
+static void a_list_has_no_buckets(void **state) {
     (void)state;
-    adds("buckets", "list", " buckets ", " splat_buckets bucket_clear estimate_buckets ");
-    adds("list", "buckets", " ", " estimate_list ");
+    adds("buckets", "list", " buckets ", " splat_buckets ");
+    adds("list", "buckets", " ", " ");
     assert_true(bytes_of(&(vit_requirements[]){requirements("buckets")}[0], "list") <
                 bytes_of(&(vit_requirements[]){requirements("list")}[0], "list"));
 }
@@ -165,9 +165,9 @@ static void light_at_fewer_samples_takes_the_place_of_the_estimate(void **state)
     (void)state;
     const vit_requirements four = requirements("sparse"), sixteen = requirements("sparse-room"), all = requirements("room");
     adds("sparse", "list", " coarse flags ", " estimate_sparse interpolate estimate_rest ");
-    adds("list", "sparse", " ", " estimate_list ");
+    adds("list", "sparse", " ", " estimate_all ");
     adds("sparse-buckets", "room-buckets", " coarse flags ", " estimate_sparse interpolate estimate_rest ");
-    adds("room-buckets", "sparse-buckets", " ", " estimate_buckets ");
+    adds("room-buckets", "sparse-buckets", " ", " estimate_all ");
     assert_int_equal(bytes_of(&four, "coarse"), bytes_of(&four, "indirect") / 12 / 4 * 36);
     assert_int_equal(bytes_of(&sixteen, "coarse"), bytes_of(&sixteen, "indirect") / 12 / 16 * 36);
     assert_int_equal(bytes_of(&sixteen, "flags"), bytes_of(&all, "keys") / 16);
@@ -217,7 +217,7 @@ static void a_scene_without_lights_has_neither_lights_nor_photons(void **state) 
     assert_int_equal(bytes_of(&need, "lights"), 0);
     assert_int_equal(need.pass_count, 3);
     assert_false(has_pass(&need, "direct_light"));
-    assert_int_equal(need.effects & (VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS)), 0);
+    assert_int_equal(need.effects & (VIT_BIT(LIGHTS) | vit_effects_upon(VIT_BIT(INDIRECT))), 0);
     assert_true(need.effects & VIT_BIT(EMISSION));
 }
 
@@ -297,7 +297,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_photons_four_passes_and_no_photon_buffer_are_left),
         cmocka_unit_test(photons_add_their_own_buffers_and_leave_the_others_alone),
-        cmocka_unit_test(a_list_has_no_buckets_and_buckets_have_no_list_estimate),
+        cmocka_unit_test(a_list_has_no_buckets),
         cmocka_unit_test(raw_buckets_differ_in_the_size_of_a_bucket_buffer_alone),
         cmocka_unit_test(a_flattened_kernel_takes_no_buffer_and_no_pass),
         cmocka_unit_test(light_at_fewer_samples_takes_the_place_of_the_estimate),

@@ -238,7 +238,7 @@ static void evaluations_of_a_list_are_the_lists_of_the_samples(void **state) {
             if (c->keys[k] != VIT_NONE)
                 expected += c->list[cluster_of(c, c->keys[k])];
         assert_true(expected > 0);
-        assert_int_equal(WORK(&c->s, estimate_list, evaluations), expected);
+        assert_int_equal(WORK(&c->s, estimate_all, evaluations), expected);
         assert_int_equal(total(&c->s, VIT_WORK_evaluations), expected);
         drop(c);
     }
@@ -380,10 +380,10 @@ static void bytes_are_sizes_times_counts(void **state) {
     counted *c = count_and_read("list", (vit_open_info){0});
     assert_int_equal(WORK(&c->s, visibility, bytes),
                      pack_buffer_bytes(&c->p, "hit_triangle") + pack_buffer_bytes(&c->p, "hit_distance"));
-    assert_int_equal(WORK(&c->s, estimate_list, bytes),
-                     pack_buffer_bytes(&c->p, "keys") + pack_buffer_bytes(&c->p, "position") +
-                         pack_buffer_bytes(&c->p, "normal") + pack_buffer_bytes(&c->p, "indirect") +
-                         WORK(&c->s, estimate_list, evaluations) * 52);
+    assert_int_equal(WORK(&c->s, estimate_all, bytes), pack_buffer_bytes(&c->p, "keys") + pack_buffer_bytes(&c->p, "position") +
+                                                           pack_buffer_bytes(&c->p, "normal") +
+                                                           pack_buffer_bytes(&c->p, "indirect") +
+                                                           WORK(&c->s, estimate_all, evaluations) * 52);
     assert_int_equal(WORK(&c->s, photon_paths, bytes), pack_buffer_bytes(&c->p, "photons") +
                                                            c->scene->lights * sizeof(vit_light) +
                                                            WORK(&c->s, photon_paths, surface_points) * (48 + 48 + 80));

@@ -135,7 +135,7 @@ static void play_path(uint32_t frames, uint32_t only, uint64_t *hashes) {
     r.scene.lights = 1;
     r.scene.paths = 32;
     r.scene.radius = 0.7f;
-    r.scene.effects = VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST);
+    r.scene.effects = VIT_BIT(LIGHTS) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST);
     vit_open_info how = rig_on_host();
     how.threads = 1;
     rig_open(&r, &p, how);

@@ -32,7 +32,7 @@ static void begin_lit(lit_room *l, vit_light light) {
     r->scene.radius = 0.3f;
     r->scene.slice_count = 16;
     r->scene.max_list = 1u << 22;
-    r->scene.effects = VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST);
+    r->scene.effects = VIT_BIT(LIGHTS) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST);
     r->material.albedo[0] = 0.9f;
     r->material.albedo[1] = 0.5f;
     r->material.albedo[2] = 0.1f;

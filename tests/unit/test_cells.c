@@ -196,7 +196,7 @@ typedef struct looked_up {
 } looked_up;
 
 static void run_kernel(const fixture *f, unsigned lanes, looked_up *p) {
-    lab l = lab_open(lanes, VIT_BIT(LIGHTS) | VIT_BIT(PHOTONS) | VIT_BIT(LIST) | VIT_BIT(AREA), look_up);
+    lab l = lab_open(lanes, VIT_BIT(LIGHTS) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(LIST) | VIT_BIT(AREA), look_up);
     const cl_mem arguments[] = {lab_buffer(&l, f->c.sides, SIDES * sizeof *f->c.sides),
                                 lab_buffer(&l, p->side, sizeof p->side),
                                 lab_buffer(&l, p->hit, sizeof p->hit),

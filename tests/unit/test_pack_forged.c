@@ -15,7 +15,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 5", im->header->version = 5)                                                             \
+    X(header, newer_version, "version 6", im->header->version = 6)                                                             \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -132,6 +132,11 @@
     X(META, unknown_effect, "unknown effects 0x8000000000000000", EFFECTS((vit_u64)1 << 63, 0))                                \
     X(META, list_and_buckets, "exclude", EFFECTS(BIT(BUCKETS), 0))                                                             \
     X(META, neither_list_nor_buckets, "without LIST or BUCKETS", EFFECTS(0, BIT(LIST)))                                        \
+    X(META, photons_without_indirect_light, "PHOTONS without INDIRECT", EFFECTS(0, BIT(INDIRECT)))                             \
+    X(META, indirect_light_without_a_maker, "INDIRECT without what makes", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),         \
+      im->scene->paths = im->scene->baked = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                            \
+    X(META, sparse_samples_without_indirect_light, "SPARSE without INDIRECT",                                                  \
+      EFFECTS(BIT(SPARSE), vit_effects_upon(BIT(INDIRECT)) & ~BIT(SPARSE)))                                                    \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
     X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \
@@ -145,9 +150,9 @@
     X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
     X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
-    X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu), im->scene->paths = im->scene->baked = 0,           \
-      vit_pack_derive(im->scene, NULL))                                                                                        \
-    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),                \
+    X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu | BIT(INDIRECT)),                                    \
+      im->scene->paths = im->scene->baked = 0, vit_pack_derive(im->scene, NULL))                                               \
+    X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(INDIRECT))),               \
       im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, no_hierarchy_nodes, "max_nodes", im->scene->max_nodes = 0)                                                         \
     X(META, huge_max_nodes, "max_nodes", im->scene->max_nodes = 0xffffffff)                                                    \

@@ -33,8 +33,8 @@ static vit_photon *kernel_photons(const room *r, const cells *c, uint32_t paths)
         lights[i].path_count = r->lights[i].paths;
     }
     lab l = lab_open(1,
-                     VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(PHOTONS) |
-                         VIT_BIT(TRACED) | r->in.effects,
+                     VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) |
+                         VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | r->in.effects,
                      frame_zero);
     const cl_mem arguments[] = {lab_buffer(&l, &s, sizeof s),
                                 lab_buffer(&l, r->g.triangles, r->m.triangles * sizeof *r->g.triangles),
