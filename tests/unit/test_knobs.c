@@ -21,13 +21,17 @@ static int begin(void **state) {
     return scene_quality_apply("photons = 10000; bounces = 4; radius = 0.8; tile = 32", &base, &why);
 }
 
-static knob_list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
+static knob_list make_for(uint64_t effects, const scene_quality *q, double radius, const char *only, uint32_t most) {
     knob_list l;
     vit_text why = {""};
-    const knobs_input in = {.base = q, .radius = radius, .effects = ~(uint64_t)0, .only = only, .most = most};
+    const knobs_input in = {.base = q, .radius = radius, .effects = effects, .only = only, .most = most};
     if (knobs_open(&in, &l, &why) != VIT_OK || knobs_spread(&l, most, &why) != VIT_OK)
         fail_msg("%s", why.text);
     return l;
+}
+
+static knob_list make(const scene_quality *q, double radius, const char *only, uint32_t most) {
+    return make_for(~(uint64_t)0, q, radius, only, most);
 }
 
 static const char *text_of(const scene_quality *q) {
@@ -167,6 +171,20 @@ static void without_photons_nothing_is_a_multiple_of_them(void **state) {
     knobs_close(&l);
 }
 
+/* Settings of photons need photons; the sparse samples need indirect light, whatever makes it. */
+static void knobs_of_indirect_light_need_what_they_turn(void **state) {
+    static const char only[] = "estimate,kernel,indirect_samples";
+    const uint64_t none = ~vit_effects_upon(VIT_BIT(INDIRECT)), other = none | VIT_BIT(INDIRECT);
+    (void)state;
+    knob_list l = make_for(none, &base, 0.8, only, 100);
+    assert_int_equal(l.count, 1);
+    knobs_close(&l);
+    l = make_for(other, &base, 0.8, only, 100);
+    assert_int_equal(l.count, 3);
+    assert_string_equal(l.settings[1].knob, "indirect_samples");
+    knobs_close(&l);
+}
+
 static void what_a_setting_says_reads_back(void **state) {
     knob_list l = make(&base, 1.0 / 3, NULL, 200);
     (void)state;
@@ -204,6 +222,7 @@ int main(void) {
         cmocka_unit_test(a_short_list_still_has_every_knob),
         cmocka_unit_test(only_knobs_that_are_named_are_turned_and_unknown_ones_refused),
         cmocka_unit_test(without_photons_nothing_is_a_multiple_of_them),
+        cmocka_unit_test(knobs_of_indirect_light_need_what_they_turn),
         cmocka_unit_test(what_a_setting_says_reads_back),
         cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
     };
