@@ -19,9 +19,9 @@ vit_status vit_pack_check_CAMS(const vit_pack *p, vit_text *why) {
 }
 
 /* A photon's power over its disc, as kernels/photons.cl has it, at the light's range, where falloff WINDOW makes most of it. */
-static bool photons_are_finite(const vit_scene *s, const vit_light *l) {
+double vit_pack_photon_bound(const vit_scene *s, const vit_light *l) {
     if (l->path_count == 0)
-        return true;
+        return 0;
     double most = 0;
     for (int k = 0; k < 3; k++)
         most = l->intensity[k] > most ? l->intensity[k] : most;
@@ -29,7 +29,7 @@ static bool photons_are_finite(const vit_scene *s, const vit_light *l) {
         most /= l->inv_range2;
     if (l->kind == VIT_LIGHT_DIRECTIONAL)
         most *= (double)l->spot_scale * l->spot_scale;
-    return most * 8.0 / l->path_count / ((double)s->radius * s->radius * VIT_PHOTON_CAP * VIT_PHOTON_CAP) <= VIT_MAX_PHOTON;
+    return most * 8.0 / l->path_count / ((double)s->radius * s->radius * VIT_PHOTON_CAP * VIT_PHOTON_CAP);
 }
 
 static const char *light_fault(const vit_scene *s, const vit_light *l) {
@@ -60,7 +60,7 @@ static const char *light_fault(const vit_scene *s, const vit_light *l) {
         return "a range without the effect RANGE";
     if (l->falloff == VIT_FALLOFF_WINDOW && !(l->inv_range2 > 0.0f))
         return "falloff WINDOW without a range";
-    if (!photons_are_finite(s, l))
+    if (!(vit_pack_photon_bound(s, l) <= VIT_MAX_PHOTON))
         return "its photons' power over the square of the radius is more than 1e30";
     if ((uint64_t)l->path_first + l->path_count > s->paths)
         return "paths run beyond the scene's";

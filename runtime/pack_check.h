@@ -25,6 +25,10 @@ vit_pack_check vit_pack_check_GEOM, vit_pack_check_BVHN;
 vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_TEXR,
     vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL, vit_pack_check_EMIT,
     vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
+/* pack_check_brightness.c: all sections together, after their own checks: whether light stays finite up to the pixel. */
+vit_pack_check vit_pack_check_brightness;
+/* A traced photon's power over its disc, W/m2, at most; 0 of lights without paths. */
+double vit_pack_photon_bound(const vit_scene *s, const vit_light *l);
 
 /* False for NaN, as every comparison with it is. */
 static inline bool in_range(float value, float least, float most) {

@@ -124,7 +124,7 @@ static vit_status check_contents(const vit_pack *p, vit_text *why) {
         status = vit_pack_check_##code(p, why);
     VIT_SECTIONS(X)
 #undef X
-    return status;
+    return status == VIT_OK ? vit_pack_check_brightness(p, why) : status;
 }
 
 /* The scene lives as long as the pack in memory, or as `out`. */

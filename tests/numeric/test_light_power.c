@@ -18,10 +18,10 @@ typedef struct lit_room {
 } lit_room;
 
 /* Photons of the light are traced in the frame. */
-static void begin_lit(lit_room *l, vit_light light) {
+static void begin_lit_room(lit_room *l, vit_light light, mesh_place_fn *place) {
     rig *r = &l->r;
     rig_begin(r, SIZE, SIZE);
-    rig_room(r, 2, rig_keep);
+    rig_room(r, 2, place);
     l->camera = rig_camera_at(&r->scene, 0.1f, -0.2f, 0.3f);
     r->cameras = &l->camera;
     l->light = light;
@@ -36,6 +36,10 @@ static void begin_lit(lit_room *l, vit_light light) {
     r->material.albedo[0] = 0.9f;
     r->material.albedo[1] = 0.5f;
     r->material.albedo[2] = 0.1f;
+}
+
+static void begin_lit(lit_room *l, vit_light light) {
+    begin_lit_room(l, light, rig_keep);
 }
 
 /* The frame's floats; free() them. *bad: those that are none. */
@@ -140,6 +144,65 @@ static void what_could_overflow_is_refused(void **state) {
     catalogue_none("lights", "intensities near FLT_MAX taken", taken, sizeof powers / sizeof *powers, "packs");
 }
 
+/* A room of half the edge `size`: the largest intensity that is taken, near a wall that mirrors light in the sharpest lobe
+ * there is, with the largest exposure, and with none. */
+static float half_edge;
+
+static void of_size(float p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] *= half_edge;
+}
+
+static bool is_taken(lit_room *l, float intensity) {
+    vit_requirements need;
+    vit_text why = {""};
+    size_t size;
+    for (int k = 0; k < 3; k++)
+        l->light.intensity[k] = intensity;
+    void *bytes = rig_pack(&l->r, &size);
+    const vit_open_info info = {.pack = bytes, .pack_size = size, .device = VIT_DEVICE_HOST};
+    const vit_status status = vit_require(&info, &need, &why);
+    if (status != VIT_OK && !strstr(why.text, "light could be") && !strstr(why.text, "photons' power"))
+        fail_msg("%s", why.text);
+    free(bytes);
+    return status == VIT_OK;
+}
+
+static void the_strongest_light_that_a_size_takes_gives_numbers(void **state) {
+    static const float sizes[] = {1e-9f, 1e-6f, 1e-3f, 0.1f, 1, 1e3f}, exposures[] = {VIT_MAX_EXPOSURE, 1, 0};
+    uint64_t bad = 0, count = 0, weaker = 0;
+    (void)state;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        for (size_t e = 0; e < sizeof exposures / sizeof *exposures; e++) {
+            lit_room l;
+            half_edge = sizes[i];
+            /* Nearer to the wall that is seen than the least distance is: samples lie ray_offset off it. */
+            begin_lit_room(&l, rig_light(0, 0, -sizes[i] + 4e-5f * sizes[i], 1), of_size);
+            l.camera = rig_camera_at(&l.r.scene, 0.1f * sizes[i], -0.2f * sizes[i], 0.3f * sizes[i]);
+            l.camera.exposure = exposures[e];
+            l.r.scene.radius = 0.3f * sizes[i];
+            l.r.scene.slice_near = 0.1f * sizes[i];
+            l.r.scene.effects |= VIT_BIT(SPECULAR);
+            l.r.material.exponent = VIT_MAX_EXPONENT;
+            l.r.material.specular[0] = l.r.material.specular[1] = 0.1f;
+            float low = 0, high = VIT_MAX_INTENSITY;
+            if (!is_taken(&l, high))
+                for (weaker++; high / 2 > low;) {
+                    const float middle = low > 0 ? sqrtf(low) * sqrtf(high) : high * 1e-6f;
+                    if (is_taken(&l, middle))
+                        low = middle;
+                    else
+                        high = middle;
+                }
+            assert_true(is_taken(&l, low > 0 ? low : high));
+            free(frame_of(&l, rig_on_host(), &bad));
+            count += (uint64_t)4 * SIZE * SIZE;
+            rig_free(&l.r);
+        }
+    assert_true(weaker > 0); /* sizes that would overflow with the largest intensity are among them */
+    catalogue_none("lights", "the strongest that rooms of 1e-9 to 1e3 m take: floats that are none", bad, count, "floats");
+}
+
 /* The largest that is taken, a micrometre from a wall, with the largest exposure. */
 static void the_strongest_light_that_is_taken_gives_numbers(void **state) {
     lit_room l;
@@ -181,6 +244,7 @@ int main(void) {
                                        cmocka_unit_test(power_times_2_to_the_k_is_light_times_2_to_the_k),
                                        cmocka_unit_test(a_light_in_a_closed_box_lights_nothing_outside),
                                        cmocka_unit_test(what_could_overflow_is_refused),
+                                       cmocka_unit_test(the_strongest_light_that_a_size_takes_gives_numbers),
                                        cmocka_unit_test(the_strongest_light_that_is_taken_gives_numbers),
                                        cmocka_unit_test(subnormal_light_has_the_same_bits_on_host_and_opencl)};
     return cmocka_run_group_tests_name("light power", tests, NULL, NULL);

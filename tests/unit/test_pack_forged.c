@@ -180,6 +180,15 @@
     X(LITE, intensity_near_the_largest_float, "intensity", im->lights[1].intensity[2] = 1e38f)                                 \
     X(LITE, photons_that_would_be_infinite, "power over the square", im->scene->radius = 1e-14f, bright(im))                   \
     X(MATL, emission_near_the_largest_float, "emission", im->materials[0].emission[0] = 1e38f)                                 \
+    X(CAMS, light_that_is_infinite_in_a_small_scene, "frame 0: light could be", im->scene->ray_offset = 1e-6f,                 \
+      im->lights[0].intensity[1] = VIT_MAX_INTENSITY, im->cameras[0].exposure = VIT_MAX_EXPOSURE)                              \
+    X(CAMS, photons_that_are_infinite_once_exposed, "frame 1: light could be", im->photons[0].power[2] = VIT_MAX_PHOTON,       \
+      im->cameras[1].exposure = VIT_MAX_EXPOSURE)                                                                              \
+    X(CAMS, area_light_that_is_infinite_in_a_small_scene, "light could be", im->scene->ray_offset = 1e-8f,                     \
+      im->emitters[0].power[0] = VIT_MAX_INTENSITY, im->emitters[0].radius2 = FLT_MIN,                                         \
+      im->cameras[0].exposure = VIT_MAX_EXPOSURE)                                                                              \
+    X(META, lights_at_no_least_distance, "its square vanishes", im->scene->ray_offset = 0)                                     \
+    X(META, lights_at_a_vanishing_distance, "its square vanishes", im->scene->ray_offset = 1e-19f)                             \
     X(PHOT, power_near_the_largest_float, "power", im->photons[0].power[1] = 1e38f)                                            \
     X(CAMS, negative_exposure, "exposure", im->cameras[0].exposure = -1)                                                       \
     X(CAMS, padding_in_use, "padding", im->cameras[1].pad3 = 1)                                                                \
@@ -297,6 +306,8 @@
     X(most_emission, im->materials[0].emission[0] = VIT_MAX_RADIANCE)                                                          \
     X(most_intensity, im->lights[0].intensity[0] = VIT_MAX_INTENSITY)                                                          \
     X(most_exposure, im->cameras[0].exposure = VIT_MAX_EXPOSURE)                                                               \
+    X(most_light_at_all, im->lights[0].intensity[0] = VIT_MAX_INTENSITY, im->cameras[0].exposure = VIT_MAX_EXPOSURE,           \
+      im->materials[0].exponent = VIT_MAX_EXPONENT)                                                                            \
     X(least_radius, im->scene->radius = VIT_MIN_RADIUS, dim(im))                                                               \
     X(mirrored_texture, im->textures[0].wrap_u = im->textures[0].wrap_v = VIT_WRAP_MIRROR)                                     \
     X(parts_up_to_the_last_cell, im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 2)                                                \
