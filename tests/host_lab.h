@@ -19,6 +19,44 @@ typedef struct host_lab_mesh {
     const vit_bvh_node *nodes;
 } host_lab_mesh;
 
+/* Kernel functions that bake/ has as C, too: X(name, floats in, floats out); words are passed as the bits of floats. */
+#define HOST_LAB_FUNCTIONS(X)                                                                                                  \
+    X(pcg, 1, 1)                                                                                                               \
+    X(unit_float, 1, 1)                                                                                                        \
+    X(even_bits, 1, 1)                                                                                                         \
+    X(sincos, 1, 2)                                                                                                            \
+    X(exp2, 1, 1)                                                                                                              \
+    X(unit, 3, 3)                                                                                                              \
+    X(basis, 3, 6)                                                                                                             \
+    X(cosine, 5, 3)                                                                                                            \
+    X(place, 3, 2)                                                                                                             \
+    X(normal, 1, 3)                                                                                                            \
+    X(srgb, 1, 1)                                                                                                              \
+    X(cone, 3, 1)                                                                                                              \
+    X(falloff, 1, 1)                                                                                                           \
+    X(left, 1, 1)                                                                                                              \
+    X(way, 6, 5)                                                                                                               \
+    X(emission, 1, 9)                                                                                                          \
+    X(sky, 3, 3)                                                                                                               \
+    X(lobe, 10, 1)                                                                                                             \
+    X(mirrored, 9, 3)                                                                                                          \
+    X(glass, 12, 7)                                                                                                            \
+    X(absorbed, 2, 1)
+
+typedef enum host_lab_function {
+#define X(name, in, out) HOST_LAB_##name,
+    HOST_LAB_FUNCTIONS(X)
+#undef X
+        HOST_LAB_FUNCTION_COUNT
+} host_lab_function;
+
+/* What these functions look at besides numbers. */
+typedef struct host_lab_given {
+    const vit_scene *scene; /* ray_offset, sky_size */
+    const vit_light *light;
+    const vit_sky_texel *sky;
+} host_lab_given;
+
 /* n is a multiple of HOST_LAB_LANES. Planes of n floats one after another: a ray is origin, unit direction, limit (negative:
  * not cast), 7 planes; a surface is position off the surface, unit face normal, unit shading normal, reflectance, 12 planes. */
 typedef struct host_lab {
@@ -37,6 +75,8 @@ typedef struct host_lab {
     void (*slices)(const vit_scene *s, const float *depth, uint32_t n, int32_t *slice);
     /* Wrapped texture coordinates, 0..1; mode: VIT_WRAP_*. */
     void (*wrap)(const float *coordinate, uint32_t mode, uint32_t n, float *wrapped);
+    /* One of HOST_LAB_FUNCTIONS; planes of n floats in and out. */
+    void (*call)(host_lab_function f, const host_lab_given *given, const float *in, uint32_t n, float *out);
 } host_lab;
 
 /* The best for this machine; there is always one. */

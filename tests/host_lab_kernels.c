@@ -4,7 +4,9 @@
 
 _Static_assert(VIT_LANES == HOST_LAB_LANES, "as the header says");
 
-#define X(bit, name, macro, why) static const uint VIT_EFFECT_##macro = 0;
+/* Lights of all kinds, for what is called with one light; rays and surfaces do not look at these. */
+#define LIGHT_EFFECTS (VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(DIRECTIONAL) | VIT_BIT(SKY_IMAGE))
+#define X(bit, name, macro, why) static const uint VIT_EFFECT_##macro = (LIGHT_EFFECTS & VIT_BIT(macro)) != 0;
 VIT_EFFECTS(X)
 #undef X
 #define X(macro) static const uint VIT_EFFECT_##macro = 0;
@@ -93,5 +95,116 @@ static void wrap(const float *coordinate, uint32_t mode, uint32_t n, float *wrap
         L_STORE(texture_wrap(L_LOAD(coordinate + i), mode), wrapped + i);
 }
 
+#define IN(k) L_LOAD(VIT_PLANE(in, k, n) + i)
+#define IN3(k) lv3_load_planes(VIT_PLANE(in, k, n), n, i)
+#define OUT(v, k) L_STORE(v, VIT_PLANE(out, k, n) + i)
+#define OUT3(v, k) lv3_store_planes(v, VIT_PLANE(out, k, n), n, i)
+
+/* Numbers and directions, of eight lanes from i on. */
+static void call_sampling(host_lab_function f, const float *in, uint n, uint i, float *out) {
+    lf a, b;
+    switch (f) {
+    case HOST_LAB_pcg:
+        OUT(L_AS_FLOAT(l_pcg(L_AS_UINT(IN(0)))), 0);
+        break;
+    case HOST_LAB_unit_float:
+        OUT(l_unit_float(L_AS_UINT(IN(0))), 0);
+        break;
+    case HOST_LAB_even_bits:
+        OUT(L_AS_FLOAT(l_even_bits(L_AS_UINT(IN(0)))), 0);
+        break;
+    case HOST_LAB_sincos:
+        l_sincos_turn(IN(0), &a, &b);
+        OUT(a, 0);
+        OUT(b, 1);
+        break;
+    case HOST_LAB_exp2:
+        OUT(l_exp2(IN(0)), 0);
+        break;
+    case HOST_LAB_unit:
+        OUT3(lv3_unit(IN3(0)), 0);
+        break;
+    case HOST_LAB_basis: {
+        ray_packet frame = ray_make(IN3(0), IN3(0));
+        OUT3(frame.ax, 0);
+        OUT3(frame.ay, 3);
+        break;
+    }
+    case HOST_LAB_cosine:
+        OUT3(ray_cosine(IN3(0), IN(3), IN(4)), 0);
+        break;
+    case HOST_LAB_place:
+        l_octahedral(IN3(0), &a, &b);
+        OUT(a, 0);
+        OUT(b, 1);
+        break;
+    case HOST_LAB_normal:
+        OUT3(l_decode_normal(L_AS_UINT(IN(0))), 0);
+        break;
+    default:
+        OUT(srgb_curve(IN(0)), 0);
+    }
+}
+
+/* Light that leaves, arrives and is sent on. */
+static void call_light(host_lab_function f, const host_lab_given *given, const float *in, uint n, uint i, float *out) {
+    const vit_light *light = given->light;
+    lf a, b;
+    lv3 o, d;
+    switch (f) {
+    case HOST_LAB_cone:
+        OUT(light_cone(light, IN3(0)), 0);
+        break;
+    case HOST_LAB_falloff:
+        OUT(light_falloff(light, IN(0)), 0);
+        break;
+    case HOST_LAB_left:
+        OUT(light_left(light, IN(0)), 0);
+        break;
+    case HOST_LAB_way: {
+        const lit_sample s = {.p = IN3(0), .n = IN3(3)};
+        OUT3(lit_way(given->scene, light, &s, &o, &a, &b), 0);
+        OUT(a, 3);
+        OUT(b, 4);
+        break;
+    }
+    case HOST_LAB_emission: { /* as photon_paths has it */
+        d = photon_emission(light, L_AS_UINT(IN(0)), &o, &a);
+        const float whole = light->kind == VIT_LIGHT_DIRECTIONAL ? VIT_PI * light->spot_scale * light->spot_scale
+                                                                 : 2.0f * VIT_PI * (1.0f - light->cos_outer);
+        OUT3(o, 0);
+        OUT3(d, 3);
+        OUT3(lv3_scale(lv3_load(light->intensity), a * vit_div(whole, (float)light->path_count)), 6);
+        break;
+    }
+    case HOST_LAB_sky:
+        OUT3(sky_radiance(given->scene, given->sky, IN3(0)), 0);
+        break;
+    case HOST_LAB_lobe:
+        OUT(specular_lobe(IN3(0), IN3(3), IN3(6), IN(9)), 0);
+        break;
+    case HOST_LAB_mirrored:
+        OUT3(specular_mirrored(IN3(0), IN3(3), IN3(6)), 0);
+        break;
+    case HOST_LAB_glass: {
+        const specular_paths p = specular_at_glass(IN3(0), IN3(3), IN3(6), L_GT(IN(9), L_F(0)), L_GT(IN(10), L_F(0)), IN(11));
+        OUT3(p.mirrored, 0);
+        OUT3(p.refracted, 3);
+        OUT(p.mirror, 6);
+        break;
+    }
+    default:
+        OUT(specular_absorbed(IN(0), IN(1)), 0);
+    }
+}
+
+static void call(host_lab_function f, const host_lab_given *given, const float *in, uint32_t n, float *out) {
+    for (uint i = 0; i < n; i += VIT_LANES)
+        if (f <= HOST_LAB_srgb)
+            call_sampling(f, in, n, i, out);
+        else
+            call_light(f, given, in, n, i, out);
+}
+
 extern const host_lab HOST_LAB;
-const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices, wrap};
+const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices, wrap, call};

@@ -1,16 +1,13 @@
 #include "check/exposure.h"
 #include "check/check.h"
+#include "common/colour.h"
 #include <math.h>
 #include <stdlib.h>
 
-#define RED 0.2126 /* of luminance, BT.709 */
-#define GREEN 0.7152
-#define BLUE 0.0722
-
-static double luminance(const spot *s) {
+static double luminance_seen(const spot *s) {
     double sum = 0;
     for (uint32_t q = 0; q < REFERENCE_SEQUENCES; q++)
-        sum += (RED * s->all[q][0] + GREEN * s->all[q][1] + BLUE * s->all[q][2]) / REFERENCE_SEQUENCES;
+        sum += luminance(s->all[q][0], s->all[q][1], s->all[q][2]) / REFERENCE_SEQUENCES;
     return sum;
 }
 
@@ -30,8 +27,8 @@ static double factor_of(const check *c) {
     double seen[CHECK_PIXELS];
     uint32_t count = 0;
     for (uint32_t i = 0; i < c->count; i++)
-        if (c->spots[i].hit && luminance(c->spots + i) > 0)
-            seen[count++] = luminance(c->spots + i);
+        if (c->spots[i].hit && luminance_seen(c->spots + i) > 0)
+            seen[count++] = luminance_seen(c->spots + i);
     if (count == 0)
         return 1;
     qsort(seen, count, sizeof *seen, in_order);

@@ -7,8 +7,8 @@
 #include <stdint.h>
 #include <string.h>
 
-#define PHOTON_PI 3.14159265358979f
-#define PHOTON_INV_PI 0.318309886183791f
+#define KERNEL_PI 3.14159265358979f
+#define KERNEL_INV_PI 0.318309886183791f
 
 typedef struct vec3 {
     float x, y, z;
@@ -72,6 +72,38 @@ static inline void sincos_turn(float u, float *s, float *c) {
     const float ss = k & 1 ? ca : sa, cc = k & 1 ? sa : ca;
     *s = k & 2 ? -ss : ss;
     *c = (k + 1) & 2 ? -cc : cc;
+}
+
+/* The unit direction of cosine c and sine s to the unit vector n, `turn` (0..1) about it. */
+static inline vec3 vec3_about(vec3 n, float c, float s, float turn) {
+    float sp, cp;
+    vec3 ax, ay;
+    sincos_turn(turn, &sp, &cp);
+    vec3_across(n, &ax, &ay);
+    return vec3_unit(vec3_along(vec3_along(vec3_scale(n, c), ax, s * cp), ay, s * sp));
+}
+
+/* Cosine-distributed direction about n from two numbers in [0, 1]; ray_cosine() of kernels/ray.clh. */
+static inline vec3 vec3_cosine(vec3 n, float a, float b) {
+    return vec3_about(n, sqrtf(float_max(1.0f - a, 0.0f)), sqrtf(a), b);
+}
+
+/* Point of the disc about `center`, across the unit vector n: square root of the radius, and angle. photon_emission(). */
+static inline vec3 vec3_disc(vec3 center, vec3 n, float radius, float u, float v) {
+    const float r = sqrtf(u) * radius;
+    float s, c;
+    vec3 ax, ay;
+    sincos_turn(v, &s, &c);
+    vec3_across(n, &ax, &ay);
+    return vec3_along(vec3_along(center, ax, r * c), ay, r * s);
+}
+
+/* The place of direction d in the octahedral square, -1..1; l_octahedral() of kernels/scene.clh. */
+static inline void octahedral_place(vec3 d, float *u, float *v) {
+    const float s = 1.0f / float_max(fabsf(d.x) + fabsf(d.y) + fabsf(d.z), 1e-30f);
+    const float x = d.x * s, y = d.y * s, ax = fabsf(x), ay = fabsf(y);
+    *u = !(d.z < 0.0f) ? x : x < 0.0f ? ay - 1.0f : 1.0f - ay;
+    *v = !(d.z < 0.0f) ? y : y < 0.0f ? ax - 1.0f : 1.0f - ax;
 }
 
 /* 2^x, -126 <= x <= 126; l_exp2() of kernels/lanes.clh. */

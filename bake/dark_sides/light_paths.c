@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PI 3.14159265f
 #define LIGHT_STREAM 0xffffffffu
 
 static double mean_intensity(const vit_light *l) {
@@ -21,26 +20,19 @@ static vec vec_of(const float p[3]) {
     return (vec){p[0], p[1], p[2]};
 }
 
-/* x and y along axes across the unit vector n, z along it (Duff et al. 2017). */
-static vec about(vec n, float x, float y, float z) {
-    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-    return (vec){(1.0f + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
-                 -sign * n.x * x - n.y * y + n.z * z};
-}
-
 /* Even over the cone cos >= least about n; the whole sphere for -1. */
 static vec cone_direction(vec n, float least, float u, float v) {
     const float z = 1.0f - u * (1.0f - least), r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
     float sine, cosine;
     sincos_turn(v, &sine, &cosine);
-    return about(n, r * cosine, r * sine, z);
+    return direction_about(n, r * cosine, r * sine, z);
 }
 
 static vec disc_point(vec center, vec n, float radius, float u, float v) {
     const float r = radius * sqrtf(u);
     float sine, cosine;
     sincos_turn(v, &sine, &cosine);
-    return plus(center, 1.0f, about(n, r * cosine, r * sine, 0.0f));
+    return plus(center, 1.0f, direction_about(n, r * cosine, r * sine, 0.0f));
 }
 
 static const vit_light *light_of(const dark_sides_lights *l, uint32_t source, uint32_t frame) {
@@ -162,8 +154,8 @@ static float along(vec a, vec b) {
 static float irradiance_of(const vit_light *l, vec n, vec to, float d) {
     const float cosine = along(to, n);
     if (l->kind == VIT_LIGHT_DIRECTIONAL)
-        return cosine / (PI * l->spot_scale * l->spot_scale);
-    return cosine / (2.0f * PI * (l->kind == VIT_LIGHT_SPOT ? 1.0f - l->cos_outer : 2.0f) * d * d);
+        return cosine / (KERNEL_PI * l->spot_scale * l->spot_scale);
+    return cosine / (2.0f * KERNEL_PI * (l->kind == VIT_LIGHT_SPOT ? 1.0f - l->cos_outer : 2.0f) * d * d);
 }
 
 float lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from, uint32_t i) {
@@ -173,7 +165,7 @@ float lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from
     const uint32_t other = side + i; /* for other numbers */
     if (is_sky(all, source)) {
         const vec up = cosine_direction(n, sequence(other, 1, 0), sequence(other, 1, 1));
-        return ray_scene_passes(&s->rays, o, up, INFINITY) ? 1.0f / (4.0f * PI * all->radius * all->radius) : 0.0f;
+        return ray_scene_passes(&s->rays, o, up, INFINITY) ? 1.0f / (4.0f * KERNEL_PI * all->radius * all->radius) : 0.0f;
     }
     const vit_light *l = source < all->t->light_count ? light_of(all, source, frame) : NULL;
     if (l && !(mean_intensity(l) > 0.0))
@@ -194,5 +186,5 @@ float lights_ask(const dark_sides_search *s, uint32_t side, const ray_side *from
         return 0.0f;
     if (l) /* an area light has half of its power on either side */
         return irradiance_of(l, n, unit, d);
-    return fmaxf(along(unit, n) * fabsf(along(unit, axis)) / (2.0f * PI * d * d), FLT_MIN);
+    return fmaxf(along(unit, n) * fabsf(along(unit, axis)) / (2.0f * KERNEL_PI * d * d), FLT_MIN);
 }

@@ -25,12 +25,6 @@ static vec vec_of(const float p[3]) {
     return (vec){p[0], p[1], p[2]};
 }
 
-static uint32_t hash(uint32_t x) { /* PCG (O'Neill 2014), as the kernels' */
-    x = x * 747796405u + 2891336453u;
-    x = ((x >> ((x >> 28) + 4u)) ^ x) * 277803737u;
-    return (x >> 22) ^ x;
-}
-
 /* The four-dimensional R sequence (Roberts 2018), shifted by a hash. */
 static float shifted(uint32_t shift, uint32_t i, uint32_t d) {
     static const uint32_t alpha[4] = {0xdb4f0b91u, 0xbbe05633u, 0xa0f2ec75u, 0x89e18285u}; /* 2^32 / phi4^(d + 1) */
@@ -38,7 +32,7 @@ static float shifted(uint32_t shift, uint32_t i, uint32_t d) {
 }
 
 float sequence(uint32_t stream, uint32_t i, uint32_t d) {
-    return shifted(hash(stream * 4u + d), i, d);
+    return shifted(pcg(stream * 4u + d), i, d);
 }
 
 float side_sequence(const ray_side *s, uint32_t i, uint32_t d) {
@@ -80,7 +74,7 @@ ray_side side_of(const geometry *g, uint32_t side) {
     ray_side s = {.normal = side_normal(g, side)};
     float rest = 1.0f;
     for (uint32_t k = 0; k < 4; k++)
-        s.shift[k] = hash(side * 4u + k);
+        s.shift[k] = pcg(side * 4u + k);
     for (int k = 0; k < 3; k++) { /* barycentric: a share of the height above each edge */
         const float margin = fminf(0.25f, inset * edge[k] / twice_area);
         s.corner = scaled_sum(s.corner, margin, corner[k]);
@@ -99,15 +93,17 @@ vec side_point(const ray_side *s, float u, float v) {
     return scaled_sum(scaled_sum(s->corner, root * (1.0f - v), s->along[0]), root * v, s->along[1]);
 }
 
+vec direction_about(vec n, float x, float y, float z) {
+    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    return (vec){(1.0f + sign * n.x * n.x * a) * x + b * y + n.x * z, sign * b * x + (sign + n.y * n.y * a) * y + n.y * z,
+                 -sign * n.x * x - n.y * y + n.z * z};
+}
+
 vec cosine_direction(vec n, float u, float v) {
-    const float sign = copysignf(1.0f, n.z), a = -1.0f / (sign + n.z), b = n.x * n.y * a; /* basis: Duff et al. 2017 */
-    const vec t = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, w = {b, sign + n.y * n.y * a, -n.y};
     const float r = sqrtf(u), height = sqrtf(fmaxf(0.0f, 1.0f - u));
     float sine, cosine;
     sincos_turn(v, &sine, &cosine);
-    vec d = scaled_sum((vec){0.0f, 0.0f, 0.0f}, r * cosine, t);
-    d = scaled_sum(d, r * sine, w);
-    return unit(scaled_sum(d, fmaxf(height, 0.02f), n)); /* not along its own surface */
+    return unit(direction_about(n, r * cosine, r * sine, fmaxf(height, 0.02f))); /* not along its own surface */
 }
 
 /* Whose hits do not count. */

@@ -53,6 +53,8 @@ const model_material *side_material(const model *m, const geometry *g, uint32_t 
 bool material_lights(const model_material *m); /* its triangles are area lights */
 /* A point of the side for 0 <= u, v < 1, g->ray_offset above it. */
 vec side_point(const ray_side *s, float u, float v);
+/* x and y along axes across the unit vector n (Duff et al. 2017), z along it. */
+vec direction_about(vec n, float x, float y, float z);
 /* A direction of a cosine distribution about n. */
 vec cosine_direction(vec n, float u, float v);
 

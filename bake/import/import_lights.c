@@ -1,4 +1,5 @@
 #include "import/importer.h"
+#include "common/pi.h"
 #include "import/light_units.h"
 #include "common/strict_math.h"
 #include <assimp/camera.h>
@@ -9,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 static void transform_point(const double m[12], const struct aiVector3D *p, double out[3]) {
     for (int i = 0; i < 3; i++)

@@ -1,11 +1,11 @@
 #include "import/light_units.h"
+#include "common/pi.h"
 #include "vitrine_pack.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #define LUMENS_A_WATT 683.0 /* of light at 555 nm: what exporters take for white light, too */
-#define PI 3.14159265358979323846
 
 double light_units_of_light(const scene *s, bool states_unit) {
     const bool photometric = s->light_units == LIGHT_UNITS_AUTO ? states_unit : s->light_units == LIGHT_UNITS_PHOTOMETRIC;

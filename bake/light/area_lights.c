@@ -1,4 +1,5 @@
 #include "light/area_lights.h"
+#include "common/pi.h"
 #include "common/parallel.h"
 #include "light/photon_rays.h"
 #include "common/sobol.h"
@@ -192,7 +193,7 @@ static void sum_up(area_lights *e) {
         e->sum[kept++] = sum;
         e->area += area;
         for (int k = 0; k < 3; k++)
-            e->flux[k] += 3.14159265358979324 * area * (double)m->emission[k];
+            e->flux[k] += PI * area * (double)m->emission[k];
     }
     e->count = kept;
 }
@@ -360,7 +361,7 @@ static int class_at(const area_lights *e, const area_light_point *p) {
 
 static vit_light_sample light_sample_of(const area_lights *e, area_light_point p, float share) {
     return (vit_light_sample){.position = {p.position.x, p.position.y, p.position.z},
-                              .radius2 = float_max(p.area * share * PHOTON_INV_PI, FLT_MIN),
+                              .radius2 = float_max(p.area * share * KERNEL_INV_PI, FLT_MIN),
                               .normal = {p.normal.x, p.normal.y, p.normal.z},
                               .near2 = side_material(&e->scene, 2 * p.triangle)->near2,
                               .power = {p.power.x * share, p.power.y * share, p.power.z * share}};
@@ -444,7 +445,7 @@ void area_lights_near(const area_lights *e, uint32_t samples, vit_material *mate
     for (uint32_t i = 0; i < e->count; i++) {
         const uint32_t m = e->scene.attributes[e->side[i] / 2].material & VIT_MATERIAL_INDEX;
         const double area = e->sum[e->count - 1] / (samples * radiance_sum(materials + m)) * ldexp(1.0, e->step[i]);
-        materials[m].near2 = float_max(materials[m].near2, (float)(NEAR_DISCS * area * (double)PHOTON_INV_PI));
+        materials[m].near2 = float_max(materials[m].near2, (float)(NEAR_DISCS * area * (double)KERNEL_INV_PI));
     }
 }
 

@@ -1,21 +1,6 @@
 #include "light/photon_emission.h"
 #include "light/guiding_tree.h"
-
-/* Fraction of a light's intensity that goes into `direction`; light_cone() of kernels/direct.cl. */
-static float cone(const vit_light *light, vec3 direction) {
-    if (light->kind != VIT_LIGHT_SPOT)
-        return 1.0f;
-    const float cosine = vec3_dot(direction, vec3_load(light->direction));
-    const float a = float_min(float_max(fmaf(cosine, light->spot_scale, light->spot_offset), 0.0f), 1.0f);
-    return a * a;
-}
-
-float photon_range_factor(const vit_light *light, float d2) {
-    const float q = d2 * light->inv_range2;
-    if (light->falloff == VIT_FALLOFF_WINDOW)
-        return float_max(1.0f - q, 0.0f) * d2;
-    return float_max(1.0f - q * q, 0.0f);
-}
+#include "light/light_model.h"
 
 /* Path i of n takes a random point of the i-th n-th of a Z-order curve over the unit square. `number`: the path's number among
  * all lights'. */
@@ -28,43 +13,12 @@ static void curve_point(uint32_t count, uint32_t i, uint32_t number, float *u, f
     *v = ((float)even_bits(curve >> 1) + unit_float(pcg(r ^ 0x85ebca6bu))) * (1.0f / 65536.0f);
 }
 
-/* sqrt(radius) and angle of a point of the disc about `center`, across the unit vector n. */
-static vec3 disc_point(vec3 center, vec3 n, float radius, float u, float v) {
-    const float r = sqrtf(u) * radius;
-    float s, c;
-    vec3 ax, ay;
-    sincos_turn(v, &s, &c);
-    vec3_across(n, &ax, &ay);
-    return vec3_along(vec3_along(center, ax, r * c), ay, r * s);
-}
-
-vec3 photon_cosine_lobe(vec3 n, float a, float b) {
-    const float s = sqrtf(a), c = sqrtf(float_max(1.0f - a, 0.0f));
-    float sp, cp;
-    sincos_turn(b, &sp, &cp);
-    vec3 ax, ay;
-    vec3_across(n, &ax, &ay);
-    return vec3_unit(vec3_along(vec3_along(vec3_scale(n, c), ax, s * cp), ay, s * sp));
-}
-
-/* Of a point, spot or directional light; photon_emission() of kernels/photons.cl. */
+/* Of a point, spot or directional light. */
 static emission leave_light(const vit_light *light, uint32_t count, float u, float v) {
-    emission e = {.origin = vec3_load(light->position), .direction = vec3_load(light->direction)};
-    float weight = 1.0f, whole = 2.0f * PHOTON_PI * (1.0f - light->cos_outer); /* sr; directional: m2 of the disc */
-    if (light->kind == VIT_LIGHT_DIRECTIONAL) {
-        e.origin = disc_point(e.origin, e.direction, light->spot_scale, u, v);
-        whole = PHOTON_PI * light->spot_scale * light->spot_scale;
-    } else {
-        const float c = fmaf(u, light->cos_outer - 1.0f, 1.0f), s = sqrtf(float_max(1.0f - c * c, 0.0f));
-        const vec3 axis = light->kind == VIT_LIGHT_SPOT ? e.direction : (vec3){0.0f, 1.0f, 0.0f};
-        float sp, cp;
-        vec3 ax, ay;
-        sincos_turn(v, &sp, &cp);
-        vec3_across(axis, &ax, &ay);
-        e.direction = vec3_unit(vec3_along(vec3_along(vec3_scale(axis, c), ax, s * cp), ay, s * sp));
-        weight = cone(light, e.direction);
-    }
-    e.power = vec3_scale(vec3_load(light->intensity), weight * (whole / (float)count));
+    emission e = {.power = vec3_load(light->intensity)};
+    float weight;
+    e.direction = light_emission(light, u, v, &e.origin, &weight);
+    e.power = vec3_scale(e.power, weight * (light_whole(light) / (float)count));
     return e;
 }
 
@@ -81,8 +35,8 @@ static emission leave_surface(const photon_rays *rays, const area_lights *area, 
     if (photon_rays_covered(rays, from.triangle, from.position, from.normal))
         return (emission){.origin = from.position, .direction = from.normal};
     return (emission){.origin = from.position,
-                      .direction = photon_cosine_lobe(from.normal, (float)at[2], (float)at[3]),
-                      .power = vec3_scale(from.power, PHOTON_PI / (float)count)};
+                      .direction = vec3_cosine(from.normal, (float)at[2], (float)at[3]),
+                      .power = vec3_scale(from.power, KERNEL_PI / (float)count)};
 }
 
 /* Back to where it was seen from the other edge of -half .. half. */
@@ -112,9 +66,9 @@ static emission leave_sky(const photons_light *l, const double at[4]) {
     const sky_ray from = sky_choose(l->sky, at[0], at[1]);
     const float radius = l->light.spot_scale;
     const vec3 center = vec3_along(vec3_load(l->light.position), from.direction, radius);
-    return (emission){.origin = disc_point(center, from.direction, radius, (float)at[2], (float)at[3]),
+    return (emission){.origin = vec3_disc(center, from.direction, radius, (float)at[2], (float)at[3]),
                       .direction = vec3_scale(from.direction, -1.0f),
-                      .power = vec3_scale(from.power, PHOTON_PI * radius * radius / (float)l->paths)};
+                      .power = vec3_scale(from.power, KERNEL_PI * radius * radius / (float)l->paths)};
 }
 
 uint32_t photon_emission_numbers(const photons_light *l) {
@@ -206,7 +160,7 @@ static arrival from_light(const vit_light *light, vec3 p) {
     a.at[1] = below_one(turn(vec3_dot(d, ax), vec3_dot(d, ay)));
     const bool reached = a.at[0] < 1.0f && d2 > 0.0f;
     a.at[0] = below_one(a.at[0]);
-    a.irradiance = vec3_scale(a.irradiance, reached ? cone(light, d) * photon_range_factor(light, d2) / d2 : 0.0f);
+    a.irradiance = vec3_scale(a.irradiance, reached ? light_cone(light, a.direction) * light_left(light, d2) / d2 : 0.0f);
     return a;
 }
 

@@ -27,10 +27,7 @@ typedef struct arrival {
 /* x, y: random numbers that choose a place of area lights, a direction to the sky. */
 arrival photon_arrival(const photon_rays *rays, const photons_light *l, vec3 p, double x, double y);
 
-/* What a range changes about the light's irradiance at squared distance d2; light_left() of kernels/direct.cl. */
-float photon_range_factor(const vit_light *light, float d2);
-/* Cosine-distributed direction about n from two random numbers, and the numbers of a unit direction. */
-vec3 photon_cosine_lobe(vec3 n, float a, float b);
+/* The numbers by which vec3_cosine() gives the unit direction d. */
 void photon_cosine_numbers(vec3 n, vec3 d, float *a, float *b);
 
 #endif

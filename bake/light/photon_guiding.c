@@ -154,7 +154,7 @@ static void trace(void *user, uint32_t slot) {
             join(f, path, frame, &s, vec3_scale(d, -1.0f), power, matt == 0, &random);
         if (++matt == MOST_HITS || matt >= in->bounces)
             return;
-        d = photon_cosine_lobe(s.face, u, v);
+        d = vec3_cosine(s.face, u, v);
         o = s.position;
     }
 }

@@ -1,6 +1,7 @@
 /* The method of kernels/photons.cl, step for step and operation for operation; hits are the kernels', too, of triangles
  * that Embree proposes (triangle_rays.c). Power: see vit_photon. */
 #include "light/photons.h"
+#include "light/light_model.h"
 #include "light/photon_emission.h"
 #include "light/photon_specular.h"
 #include <pthread.h>
@@ -37,7 +38,7 @@ static float photon_radius(float radius, float way, float facing) {
 /* power: W, incident; whole: the scene's radius. As photon_store() of kernels/photons.cl. */
 static void store(vit_photon *q, vec3 p, vec3 d, vec3 power, float radius, float whole, uint32_t zone) {
     const float r2 = radius * radius, inv = 1.0f / r2, spread = float_max(radius, VIT_PHOTON_CAP * whole),
-                scale = 2.0f * PHOTON_INV_PI * (1.0f / (spread * spread));
+                scale = 2.0f * KERNEL_INV_PI * (1.0f / (spread * spread));
     *q = (vit_photon){.position = {p.x, p.y, p.z},
                       .radius2 = r2,
                       .direction = {d.x, d.y, d.z},
@@ -104,7 +105,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             store(slots + (size_t)(hit - 1) * l->paths + i, s.position, d, power,
                   photon_radius(b->in->radius, t, -vec3_dot(from, s.face)), b->in->radius, cell_of(b, d, triangle, weight_of));
         if (hit == 0 && !l->area && !l->sky)
-            power = vec3_scale(power, photon_range_factor(&l->light, t * t));
+            power = vec3_scale(power, light_left(&l->light, t * t));
         bounce_numbers(number, hit, b->in->sequence, &u, &v);
         if (hit == 0 && l->guide) {
             u = start.bounce[0];
@@ -114,7 +115,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             const vec3 specular = effects & VIT_BIT(SPECULAR) && s.material->kind == VIT_MATTE ? vec3_load(s.material->specular)
                                                                                                : (vec3){0.0f, 0.0f, 0.0f};
             power = vec3_times(power, vec3_along(s.albedo, specular, 1.0f));
-            d = photon_cosine_lobe(s.face, u, v);
+            d = vec3_cosine(s.face, u, v);
             o = s.position;
             from = s.face;
         } else {

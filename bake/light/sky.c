@@ -3,6 +3,7 @@
  * solid angle, goes to the texel that it lies in; so none is lost, however small and bright. Directions are chosen by
  * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "light/sky.h"
+#include "common/pi.h"
 #include "common/file_trouble.h"
 #include "import/image_file.h"
 #include "import/radiance.h"
@@ -15,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979324
 #define MAX_TEXELS (1u << 25) /* of the picture: 384 MiB as floats */
 #define LEAST_SIZE 16u
 #define MOST_SIZE 1024u
@@ -23,16 +23,7 @@
 
 /* ---- the octahedral square ---- */
 
-/* The place of direction d in the square, -1..1; l_octahedral() of kernels/scene.clh. */
-static void to_square(vec3 d, float *u, float *v) {
-    const float s = 1.0f / float_max(fabsf(d.x) + fabsf(d.y) + fabsf(d.z), 1e-30f);
-    const float x = d.x * s, y = d.y * s, ax = fabsf(x), ay = fabsf(y);
-    *u = !(d.z < 0.0f) ? x : x < 0.0f ? ay - 1.0f : 1.0f - ay;
-    *v = !(d.z < 0.0f) ? y : y < 0.0f ? ax - 1.0f : 1.0f - ax;
-}
-
-/* And back; *density: solid angle over area of the square there, sr. */
-static vec3 from_square(double u, double v, double *density) {
+vec3 sky_place(double u, double v, double *density) {
     const double z = 1.0 - fabs(u) - fabs(v);
     const double x = z >= 0.0 ? u : (1.0 - fabs(v)) * (u < 0.0 ? -1.0 : 1.0),
                  y = z >= 0.0 ? v : (1.0 - fabs(u)) * (v < 0.0 ? -1.0 : 1.0);
@@ -61,20 +52,7 @@ static void fill_gutter(environment *s) {
 }
 
 vec3 sky_radiance(const environment *s, vec3 d) {
-    if (s->size == 0)
-        return vec3_load(s->background);
-    float x, y;
-    const float size = (float)s->size;
-    to_square(d, &x, &y);
-    const float u = float_min(float_max(fmaf(fmaf(x, 0.5f, 0.5f), size, -0.5f), -1.0f), size - 0.5f);
-    const float v = float_min(float_max(fmaf(fmaf(y, 0.5f, 0.5f), size, -0.5f), -1.0f), size - 0.5f);
-    const float fu = floorf(u), fv = floorf(v);
-    const vit_sky_texel *t = texel(s, (int)fu, (int)fv), *below = t + s->size + 2;
-    const vec3 c00 = vec3_load(t->radiance), c10 = vec3_load(t[1].radiance);
-    const vec3 c01 = vec3_load(below->radiance), c11 = vec3_load(below[1].radiance);
-    const vec3 top = vec3_along(c00, vec3_sub(c10, c00), u - fu), bottom = vec3_along(c01, vec3_sub(c11, c01), u - fu);
-    const vec3 c = vec3_along(top, vec3_sub(bottom, top), v - fv);
-    return (vec3){float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f)};
+    return s->size == 0 ? vec3_load(s->background) : sky_picture(s->texels, s->size, d);
 }
 
 /* ---- directions by importance ---- */
@@ -87,7 +65,7 @@ static double texel_power(const environment *s, int x, int y, double power[3]) {
     for (int q = 0; q < 4; q++) {
         const int across = q & 1 ? 1 : -1, down = q & 2 ? 1 : -1;
         double solid = 0.0;
-        (void)from_square((x + 0.5 + 0.25 * across) * width - 1.0, (y + 0.5 + 0.25 * down) * width - 1.0, &solid);
+        (void)sky_place((x + 0.5 + 0.25 * across) * width - 1.0, (y + 0.5 + 0.25 * down) * width - 1.0, &solid);
         solid *= 0.25 * width * width;
         const float *own = texel(s, x, y)->radiance, *beside = texel(s, x + across, y)->radiance,
                     *below = texel(s, x, y + down)->radiance, *corner = texel(s, x + across, y + down)->radiance;
@@ -153,7 +131,7 @@ sky_ray sky_choose(const environment *s, double x, double y) {
     const double width = 2.0 / s->size;
     double solid, power[3];
     const double chosen = texel_power(s, (int)column, (int)row, power) / s->weight[0]; /* probability */
-    return (sky_ray){from_square(((double)column + x) * width - 1.0, ((double)row + y) * width - 1.0, &solid),
+    return (sky_ray){sky_place(((double)column + x) * width - 1.0, ((double)row + y) * width - 1.0, &solid),
                      {(float)(power[0] / chosen), (float)(power[1] / chosen), (float)(power[2] / chosen)}};
 }
 
@@ -201,7 +179,8 @@ static void splat_picture(const float *rgb, int width, int height, double rotate
                 for (uint32_t i = 0; i < parts; i++) {
                     const double angle = 2.0 * PI * (((double)x * parts + i + 0.5) / columns - 0.5) - rotate;
                     float u, v;
-                    to_square((vec3){(float)(sine * strict_sin(angle)), height_of, (float)(-sine * strict_cos(angle))}, &u, &v);
+                    octahedral_place((vec3){(float)(sine * strict_sin(angle)), height_of, (float)(-sine * strict_cos(angle))},
+                                     &u, &v);
                     const int column = (int)((u * 0.5f + 0.5f) * (float)size), row = (int)((v * 0.5f + 0.5f) * (float)size);
                     const size_t at = (size_t)(row < (int)size ? row : (int)size - 1) * size +
                                       (size_t)(column < (int)size ? column : (int)size - 1);

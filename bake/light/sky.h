@@ -28,6 +28,25 @@ void sky_free(environment *s);
 /* Radiance in unit direction d, W/(m2 sr); sky_radiance() of kernels/samples.cl. */
 vec3 sky_radiance(const environment *s, vec3 d);
 
+/* The same of a picture of `size` texels per side, section SKYT. */
+static inline vec3 sky_picture(const vit_sky_texel *texels, uint32_t size, vec3 d) {
+    float x, y;
+    const float wide = (float)size;
+    octahedral_place(d, &x, &y);
+    const float u = float_min(float_max(fmaf(fmaf(x, 0.5f, 0.5f), wide, -0.5f), -1.0f), wide - 0.5f);
+    const float v = float_min(float_max(fmaf(fmaf(y, 0.5f, 0.5f), wide, -0.5f), -1.0f), wide - 0.5f);
+    const float fu = floorf(u), fv = floorf(v);
+    const vit_sky_texel *t = texels + (size_t)((int)fv + 1) * (size + 2) + (size_t)((int)fu + 1), *below = t + size + 2;
+    const vec3 c00 = vec3_load(t->radiance), c10 = vec3_load(t[1].radiance);
+    const vec3 c01 = vec3_load(below->radiance), c11 = vec3_load(below[1].radiance);
+    const vec3 top = vec3_along(c00, vec3_sub(c10, c00), u - fu), bottom = vec3_along(c01, vec3_sub(c11, c01), u - fu);
+    const vec3 c = vec3_along(top, vec3_sub(bottom, top), v - fv);
+    return (vec3){float_max(c.x, 0.0f), float_max(c.y, 0.0f), float_max(c.z, 0.0f)};
+}
+
+/* Unit direction of a place of the octahedral square, -1..1; *density: solid angle over area of the square there, sr. */
+vec3 sky_place(double u, double v, double *density);
+
 typedef struct sky_ray {
     vec3 direction; /* to the sky, unit */
     vec3 power;     /* radiance, the mean of the direction's texel, / density of directions, W/m2 */

@@ -1,4 +1,5 @@
 #include "motion/tracks.h"
+#include "common/pi.h"
 #include "motion/curves.h"
 #include "common/names.h"
 #include "common/strict_math.h"
@@ -7,8 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 /* ---- vectors ---- */
 

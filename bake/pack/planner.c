@@ -1,4 +1,5 @@
 #include "pack/planner.h"
+#include "common/pi.h"
 #include "pack/copies.h"
 #include "common/strict_math.h"
 #include <math.h>
@@ -9,7 +10,6 @@
 #define PACKET 16u
 #define PLAN_BY_POWER                                                                                                          \
     0.2 /* of the paths are shared by power where the lights' worth is known: what was not found to matter may still */
-#define TWO_PI 6.283185307179586
 
 /* The radius if it is "auto": so much of the mean way of light from side to side, where errors of the estimate, leaks and lost
  * edges among them, are least or nearly so in rooms and in buildings (tests/bench/LOG.md, "The automatic radius"). But the disc
@@ -49,7 +49,7 @@ static uint32_t share(const scene *s, double power, double total, const double *
 static vit_status share_paths(const plan_input *in, const double *worth, plan *p, vit_text *why) {
     const scene *s = in->scene;
     tracks *t = in->tracks;
-    const double area = sum_of(p->area.flux) / TWO_PI;
+    const double area = sum_of(p->area.flux) / (2.0 * PI);
     const double above = s->sky.light ? 0.5 * sum_of(in->sky->irradiance) * (double)p->sky_radius * (double)p->sky_radius : 0;
     double total = area + above;
     uint32_t first = 0;
@@ -301,7 +301,7 @@ vit_status plan_share(const plan_input *in, const double *worth, plan *p, vit_te
 }
 
 double plan_radius(const plan *p, double stored) {
-    const double of_one = sqrt(p->lit_area / (3.14159265358979 * stored)); /* its disc holds one photon on average */
+    const double of_one = sqrt(p->lit_area / (PI * stored)); /* its disc holds one photon on average */
     const double radius =
         fmin(fmax(AUTO_OF_WAY * p->free_path, sqrt(AUTO_LEAST_PHOTONS) * of_one), sqrt(AUTO_MOST_PHOTONS) * of_one);
     int exponent;

@@ -1,6 +1,6 @@
 #include "reference/caustics.h"
 #include "reference/chunks.h"
-#include "reference/lights.h"
+#include "light/light_model.h"
 #include "reference/sequence.h"
 #include <stdlib.h>
 #include <string.h>
@@ -33,27 +33,12 @@ typedef struct tracing {
     uint32_t seed, of_light, paths;
 } tracing;
 
-/* Where a path starts, and the power that it has. photon_emission() of kernels/photons.cl, with other numbers. */
+/* Where a path starts, and the power that it has. */
 static void emit(const vit_light *light, uint32_t paths, float u, float v, vec3 *o, vec3 *d, float power[3]) {
-    double share = 2 * REFERENCE_PI * (1 - (double)light->cos_outer) / paths; /* sr; of a direction's disc: m2 */
-    const vec3 axis = light->kind == VIT_LIGHT_POINT ? (vec3){0, 1, 0} : vec3_load(light->direction);
-    *o = vec3_load(light->position);
-    if (light->kind == VIT_LIGHT_DIRECTIONAL) {
-        float s, c;
-        vec3 ax, ay;
-        sincos_turn(v, &s, &c);
-        vec3_across(axis, &ax, &ay);
-        const float r = sqrtf(u) * light->spot_scale;
-        *o = vec3_along(vec3_along(*o, ax, r * c), ay, r * s);
-        *d = axis;
-        share = REFERENCE_PI * (double)light->spot_scale * (double)light->spot_scale / paths;
-    } else {
-        const float c = 1.0f - u * (1.0f - light->cos_outer);
-        *d = specular_about(axis, c, sqrtf(float_max(1.0f - c * c, 0.0f)), v);
-        share *= (double)light_cone(light, vec3_scale(*d, -1.0f));
-    }
+    float weight;
+    *d = light_emission(light, u, v, o, &weight);
     for (int k = 0; k < 3; k++)
-        power[k] = (float)((double)light->intensity[k] * share);
+        power[k] = light->intensity[k] * (weight * (light_whole(light) / (float)paths));
 }
 
 /* Path i of all. */
@@ -80,7 +65,7 @@ static void trace_path(const tracing *w, uint32_t i, uint64_t *rays) {
         const photon_surface s = photon_surface_at(&p->scene, o, d, t, triangle);
         if (hit == 0 && light->inv_range2 > 0.0f) /* the same light that direct lighting sees */
             for (int k = 0; k < 3; k++)
-                out->power[k] *= light_falloff(light, t * t) * (t * t);
+                out->power[k] *= light_left(light, t * t);
         if (s.material->kind == VIT_MATTE) {
             if (straight)
                 return;
@@ -240,7 +225,7 @@ static void add_photon(const caustics *c, const caustic_photon *q, const path_ve
     if (place->glossy)
         specular_reflectance(place, vec3_scale(q->direction, -1.0f), reflected);
     for (int k = 0; k < 3; k++) {
-        const double light = reflected[k] * (double)q->power[k] / (REFERENCE_PI * (double)r2);
+        const double light = reflected[k] * (double)q->power[k] / (PI * (double)r2);
         all[k] += light;
         limited[k] += (int)q->passed <= most ? light : 0;
     }

@@ -1,13 +1,10 @@
 #include "reference/light_sampling.h"
+#include "common/colour.h"
+#include "light/sky.h"
 #include <stdlib.h>
 
 static const vit_material *material_of(const photon_scene *s, uint32_t triangle) {
     return s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
-}
-
-/* BT.709. Positive wherever any channel is. */
-static double luminance(const float c[3]) {
-    return 0.2126 * (double)c[0] + 0.7152 * (double)c[1] + 0.0722 * (double)c[2];
 }
 
 static vec3 normal_of(const photon_scene *s, uint32_t triangle) {
@@ -22,7 +19,7 @@ static double area_of(const photon_scene *s, uint32_t triangle) {
 
 static double light_of(const photon_scene *s, uint32_t triangle) {
     const vit_material *m = material_of(s, triangle);
-    return m->lights ? luminance(m->emission) : 0;
+    return m->lights ? luminance_of(m->emission) : 0;
 }
 
 static bool open_area(light_sampler *e) {
@@ -59,10 +56,10 @@ static double share_of(const light_sampler *e, uint32_t x, uint32_t y) {
     double sum = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++)
-            sum += part[i + 1] * part[j + 1] * luminance(texel(e, (int64_t)x + i, (int64_t)y + j));
-    const double u = fabs(2 * (x + 0.5) / e->sky_size - 1), v = fabs(2 * (y + 0.5) / e->sky_size - 1);
-    const double fu = u + v > 1 ? 1 - v : u, fv = u + v > 1 ? 1 - u : v, w = 1 - u - v;
-    return sum / pow(fu * fu + fv * fv + w * w, 1.5); /* light_sampler_sky_density() */
+            sum += part[i + 1] * part[j + 1] * luminance_of(texel(e, (int64_t)x + i, (int64_t)y + j));
+    double solid;
+    (void)sky_place(2 * (x + 0.5) / e->sky_size - 1, 2 * (y + 0.5) / e->sky_size - 1, &solid);
+    return sum * solid;
 }
 
 static bool open_sky(light_sampler *e) {
@@ -107,32 +104,11 @@ void light_sampler_close(light_sampler *e) {
     *e = (light_sampler){0};
 }
 
-/* l_octahedral() of kernels/scene.clh: the direction's place in the square -1..1. */
-static void octahedral(vec3 d, double *u, double *v) {
-    const double sum = fmax(fabs((double)d.x) + fabs((double)d.y) + fabs((double)d.z), 1e-30);
-    const double x = (double)d.x / sum, y = (double)d.y / sum, ax = fabs(x), ay = fabs(y);
-    *u = d.z < 0.0f ? (x < 0 ? ay - 1 : 1 - ay) : x;
-    *v = d.z < 0.0f ? (y < 0 ? ax - 1 : 1 - ax) : y;
-}
-
-/* sky_radiance() of kernels/samples.cl. */
 void light_sampler_sky(const light_sampler *e, vec3 d, double radiance[3]) {
-    for (int k = 0; k < 3; k++)
-        radiance[k] = (double)e->background[k];
-    if (!e->sky)
-        return;
-    double u, v;
-    const double size = e->sky_size;
-    octahedral(d, &u, &v);
-    u = fmin(fmax((u + 1) / 2 * size - 0.5, -1), size - 0.5);
-    v = fmin(fmax((v + 1) / 2 * size - 0.5, -1), size - 0.5);
-    const double fu = floor(u), fv = floor(v);
-    const int64_t x = (int64_t)fu, y = (int64_t)fv;
-    u -= fu;
-    v -= fv;
-    for (int k = 0; k < 3; k++)
-        radiance[k] = (1 - v) * ((1 - u) * (double)texel(e, x, y)[k] + u * (double)texel(e, x + 1, y)[k]) +
-                      v * ((1 - u) * (double)texel(e, x, y + 1)[k] + u * (double)texel(e, x + 1, y + 1)[k]);
+    const vec3 c = e->sky ? sky_picture(e->sky, e->sky_size, d) : vec3_load(e->background);
+    radiance[0] = (double)c.x;
+    radiance[1] = (double)c.y;
+    radiance[2] = (double)c.z;
 }
 
 bool light_sampler_has(const light_sampler *e, uint32_t triangle) {
@@ -177,9 +153,8 @@ bool light_sampler_sky_point(const light_sampler *e, double u, double v, light_s
     if (!e->sky_rows || !(e->sky_rows[size - 1] > 0))
         return false;
     const uint32_t y = choose(e->sky_rows, size, &v), x = choose(e->sky_texels + (size_t)y * size, size, &u);
-    const double px = 2 * (x + u) / size - 1, py = 2 * (y + v) / size - 1, ax = fabs(px), ay = fabs(py), z = 1 - ax - ay;
-    const double dx = z < 0 ? (px < 0 ? ay - 1 : 1 - ay) : px, dy = z < 0 ? (py < 0 ? ax - 1 : 1 - ax) : py;
-    out->to = vec3_unit((vec3){(float)dx, (float)dy, (float)z});
+    double solid;
+    out->to = sky_place(2 * (x + u) / size - 1, 2 * (y + v) / size - 1, &solid);
     out->distance = 3e38f;
     out->density = light_sampler_sky_density(e, out->to);
     light_sampler_sky(e, out->to, out->radiance);
@@ -196,10 +171,11 @@ double light_sampler_area_density(const light_sampler *e, uint32_t triangle, vec
 double light_sampler_sky_density(const light_sampler *e, vec3 d) {
     if (!e->sky_rows || !(e->sky_rows[e->sky_size - 1] > 0))
         return 0;
-    double u, v;
+    float u, v;
     const uint32_t size = e->sky_size;
-    octahedral(d, &u, &v);
-    const uint32_t x = (uint32_t)fmin((u + 1) / 2 * size, size - 1.0), y = (uint32_t)fmin((v + 1) / 2 * size, size - 1.0);
+    octahedral_place(d, &u, &v);
+    const uint32_t x = (uint32_t)fmin(((double)u + 1) / 2 * size, size - 1.0),
+                   y = (uint32_t)fmin(((double)v + 1) / 2 * size, size - 1.0);
     const double *row = e->sky_texels + (size_t)y * size;
     const double share = (row[x] - (x > 0 ? row[x - 1] : 0)) / e->sky_rows[size - 1];
     const double sum = fabs((double)d.x) + fabs((double)d.y) + fabs((double)d.z); /* of a unit vector: 1 / length there */

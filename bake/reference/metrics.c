@@ -1,4 +1,5 @@
 #include "reference/metrics.h"
+#include "common/colour.h"
 #include <math.h>
 #include <stddef.h>
 
@@ -26,15 +27,9 @@ static double over(double x, double scale) {
     return x > 0 || x < 0 ? x / scale : 0;
 }
 
-/* IEC 61966-2-1 curve of a linear value, clamped to 0..1; as resolve.cl. */
-static double display(double linear) {
-    const double c = linear > 0 ? (linear < 1 ? linear : 1) : 0;
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
-}
-
 /* Luma of a pixel's display values; ITU-R BT.709. */
 static double luma(double red, double green, double blue) {
-    return 0.2126 * display(red) + 0.7152 * display(green) + 0.0722 * display(blue);
+    return luminance(srgb_encoded(red), srgb_encoded(green), srgb_encoded(blue));
 }
 
 /* Start of the i-th block of `size` on an edge of `length`: the last one ends with the picture. */
@@ -127,7 +122,7 @@ static double similarity(const pictures *p) {
 static double psnr(const pictures *p, size_t count) {
     double sum = 0;
     for (size_t i = 0; i < count; i++) {
-        const double e = display((double)p->image[i]) - display(p->reference[i]);
+        const double e = srgb_encoded((double)p->image[i]) - srgb_encoded(p->reference[i]);
         sum += e * e;
     }
     const double db = sum > 0 ? 10 * log10((double)count / sum) : MOST_DB;

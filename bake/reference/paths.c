@@ -7,7 +7,7 @@
  * squared index), which no refraction changes. Small lights' light by mirrors and glass are photons (caustics.h). */
 #include "reference/paths.h"
 #include "reference/caustics.h"
-#include "reference/lights.h"
+#include "light/light_model.h"
 #include "reference/sequence.h"
 
 #define SURVIVAL 0.95 /* most that Russian roulette lets live, so that paths in white rooms end */
@@ -111,7 +111,7 @@ static void look_at_lights(const path_scene *s, const path_vertex *place, vec3 n
         int panes = 0;
         if (indirect && s->direct_only && s->direct_only[i])
             continue;
-        const float e = light_irradiance(light, place->position, n, &l, &d);
+        const float e = light_irradiance(light, s->meta->ray_offset, place->position, n, &l, &d);
         if (!(e > 0.0f) || !(vec3_dot(place->face, l) > 0.0f))
             continue;
         *rays += 1;
@@ -195,11 +195,10 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
             look_at_lights(p, q, q->normal, false, (int)p->bounces - 1, &e, rays);
             for (int k = 0; k < 3; k++) {
                 const double factor = (q->glossy ? 1 : albedo[k]), all = albedo[k] + (double)m->specular[k];
-                const double own =
-                    (double)m->emission[k] + factor * e.open[k] / REFERENCE_PI + all * (double)p->meta->ambient[k];
+                const double own = (double)m->emission[k] + factor * e.open[k] / PI + all * (double)p->meta->ambient[k];
                 out->direct[k] += out->weight[k] * own * (double)c->exposure;
-                out->limited[k] = out->weight[k] * factor * e.limited[k] / REFERENCE_PI * (double)c->exposure;
-                out->unlimited[k] = out->weight[k] * factor * e.unlimited[k] / REFERENCE_PI * (double)c->exposure;
+                out->limited[k] = out->weight[k] * factor * e.limited[k] / PI * (double)c->exposure;
+                out->unlimited[k] = out->weight[k] * factor * e.unlimited[k] / PI * (double)c->exposure;
             }
             if (p->face_normals)
                 out->place.normal = q->face;
@@ -299,8 +298,7 @@ static void add(const walk *w, uint32_t between, const double light[3]) {
 /* Radiance from direction d that chance has found; density: with which looking for it would have. */
 static void add_found(const walk *w, uint32_t between, const double radiance[3], double density) {
     const double share = w->density > 0 ? w->density / (w->density + density) : 1;
-    const double light[3] = {REFERENCE_PI * share * radiance[0], REFERENCE_PI * share * radiance[1],
-                             REFERENCE_PI * share * radiance[2]};
+    const double light[3] = {PI * share * radiance[0], PI * share * radiance[1], PI * share * radiance[2]};
     add(w, between, light);
 }
 
@@ -352,7 +350,7 @@ static bool scatter(walk *w, bool first, float u, float v, vec3 *d) {
         if (!(cosine > 0) || !(w->density > 0))
             return false;
         for (int k = 0; k < 3; k++)
-            w->weight[k] *= reflected[k] * cosine / (REFERENCE_PI * w->density);
+            w->weight[k] *= reflected[k] * cosine / (PI * w->density);
     }
     return true;
 }
@@ -434,7 +432,7 @@ static void reflect(const path_scene *p, const view_sample *v, const path_sums *
     const path_vertex *s = &v->place;
     const double albedo[3] = {(double)s->albedo.x, (double)s->albedo.y, (double)s->albedo.z};
     for (int k = 0; k < 3; k++) {
-        const double scale = v->weight[k] * (s->glossy ? 1 : albedo[k]) / REFERENCE_PI * (double)p->camera->exposure;
+        const double scale = v->weight[k] * (s->glossy ? 1 : albedo[k]) / PI * (double)p->camera->exposure;
         out->direct[k] += scale * sums->direct[k];
         out->limited[k] += scale * sums->limited[k];
         out->unlimited[k] += scale * sums->unlimited[k];

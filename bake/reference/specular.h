@@ -3,10 +3,9 @@
 #define VIT_COST_SHINE_H
 
 #include "light/photon_specular.h"
+#include "common/pi.h"
 #include "vitrine_pack.h"
 #include <stdbool.h>
-
-#define REFERENCE_PI 3.14159265358979323846
 
 /* A matt or glossy place of a path. */
 typedef struct path_vertex {
@@ -41,20 +40,11 @@ static inline double specular_lobe_part(const path_vertex *s) {
 
 /* Density with which paths go on to l, 1/sr. */
 static inline double specular_density(const path_vertex *s, vec3 l) {
-    const double matt = fmax((double)vec3_dot(s->normal, l), 0) / REFERENCE_PI;
+    const double matt = fmax((double)vec3_dot(s->normal, l), 0) / PI;
     if (!s->glossy)
         return matt;
     const double part = specular_lobe_part(s);
-    return part * specular_power(s, l) * ((double)s->exponent + 1) / (2 * REFERENCE_PI) + (1 - part) * matt;
-}
-
-/* Unit direction whose cosine to n is c; turn: 0..1, about n. */
-static inline vec3 specular_about(vec3 n, float c, float s, float turn) {
-    float sp, cp;
-    sincos_turn(turn, &sp, &cp);
-    vec3 ax, ay;
-    vec3_across(n, &ax, &ay);
-    return vec3_unit(vec3_along(vec3_along(vec3_scale(n, c), ax, s * cp), ay, s * sp));
+    return part * specular_power(s, l) * ((double)s->exponent + 1) / (2 * PI) + (1 - part) * matt;
 }
 
 /* A direction of that density from two numbers of [0, 1). */
@@ -63,11 +53,11 @@ static inline vec3 specular_direction(const path_vertex *s, float u, float v) {
     if (u < part) {
         const vec3 mirrored = vec3_unit(vec3_along(vec3_scale(s->out, -1.0f), s->normal, 2.0f * vec3_dot(s->normal, s->out)));
         const double c = pow((double)(u / part), 1 / ((double)s->exponent + 1));
-        return specular_about(mirrored, (float)c, (float)sqrt(fmax(1 - c * c, 0)), v);
+        return vec3_about(mirrored, (float)c, (float)sqrt(fmax(1 - c * c, 0)), v);
     }
     if (part > 0.0f)
         u = (u - part) / (1.0f - part);
-    return specular_about(s->normal, sqrtf(float_max(1.0f - u, 0.0f)), sqrtf(u), v);
+    return vec3_cosine(s->normal, u, v);
 }
 
 #endif

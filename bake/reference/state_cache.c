@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #define FACE_NORMALS 0x80000000u /* with METHOD: of reference_input */
-#define METHOD 2u                /* raise when the same input gives other bits than before */
+#define METHOD 3u                /* raise when the same input gives other bits than before */
 #define ROOM 4096                /* bytes of a path */
 
 typedef struct cache_header {

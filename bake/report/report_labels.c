@@ -1,5 +1,6 @@
 /* report_labels.c: label after label takes the cheapest of some places about its point. Greedy: a plot has a dozen labels. */
 #include "report/report_parts.h"
+#include "common/pi.h"
 
 #include <math.h>
 
@@ -40,14 +41,13 @@ static double price(report_span at, const report_label *labels, uint32_t placed,
 
 void report_place_labels(report_label *labels, uint32_t count, const report_span *avoid, uint32_t avoid_count,
                          const report_span *inside) {
-    const double pi = 3.14159265358979323846;
     for (uint32_t i = 0; i < count; i++) {
         double best = INFINITY;
         for (int ring = 0; ring < RINGS; ring++)
             for (int d = 0; d < DIRECTIONS; d++) {
                 /* From down left on: there lies nothing below a front. */
-                const double turn = (d + 1) / 2 * (d % 2 ? 1 : -1) * 2 * pi / DIRECTIONS;
-                const report_span at = place(&labels[i], 0.75 * pi + turn, GAP + RING * ring);
+                const double turn = (d + 1) / 2 * (d % 2 ? 1 : -1) * 2 * PI / DIRECTIONS;
+                const report_span at = place(&labels[i], 0.75 * PI + turn, GAP + RING * ring);
                 const double cost = price(at, labels, i, avoid, avoid_count, inside) + 8 * ring + fabs(turn);
                 if (cost >= best)
                     continue;

@@ -1,5 +1,6 @@
 /* report_pictures.c: which settings are shown, and their frames and errors as pictures of at most MOST_PIXELS pixels. */
 #include "report/report_parts.h"
+#include "common/colour.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -92,13 +93,8 @@ static block_sums sum_block(const cost_results *r, const float *image, const rep
     return s;
 }
 
-/* sRGB's transfer curve (IEC 61966-2-1), clamped; not a number is black. */
 static uint8_t to_srgb(double linear) {
-    const double v = !(linear > 0)         ? 0
-                     : linear >= 1         ? 1
-                     : linear <= 0.0031308 ? 12.92 * linear
-                                           : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-    return (uint8_t)lround(255 * v);
+    return (uint8_t)lround(255 * srgb_encoded(linear));
 }
 
 static bool print_picture(const cost_results *r, const float *image, const report_pictures *p, FILE *to) {
@@ -133,13 +129,10 @@ static double reference_mean(const cost_results *r) {
     return sum / (double)count;
 }
 
-static double luminance(const double rgb[3]) {
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; /* ITU-R BT.709 */
-}
-
 /* Error over what relMSE divides by, of luminance: the mean of its square is about relMSE. -1 .. 1 */
 static double signed_error(const block_sums *s, double mean) {
-    const double want = luminance(s->reference) / s->pixels, have = luminance(s->frame) / s->pixels;
+    const double want = luminance(s->reference[0], s->reference[1], s->reference[2]) / s->pixels,
+                 have = luminance(s->frame[0], s->frame[1], s->frame[2]) / s->pixels;
     const double scale = sqrt(want * want + 0.01 * mean * mean);
     return scale > 0 ? (have - want) / scale : have > want ? 1 : 0;
 }

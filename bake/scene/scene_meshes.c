@@ -1,4 +1,5 @@
 #include "scene/scene_reader.h"
+#include "common/pi.h"
 #include "vitrine_pack.h"
 #include "common/strict_math.h"
 #include <math.h>
@@ -21,7 +22,6 @@ static const config_field mesh_fields[] = {
 
 /* Right angles are exact: a box turned by 90 degrees keeps its vertices on the axes. */
 static void sine_cosine(double degrees, double *sine, double *cosine) {
-    const double pi = 3.14159265358979323846;
     const double turn = fmod(degrees, 360.0);
     const double quarter = turn / 90.0;
     if (quarter == floor(quarter)) {
@@ -31,8 +31,8 @@ static void sine_cosine(double degrees, double *sine, double *cosine) {
         *cosine = sines[(q + 1) & 3];
         return;
     }
-    *sine = strict_sin(turn * pi / 180.0);
-    *cosine = strict_cos(turn * pi / 180.0);
+    *sine = strict_sin(turn * PI / 180.0);
+    *cosine = strict_cos(turn * PI / 180.0);
 }
 
 /* translate * Rz * Ry * Rx * scale, 3 x 4. */

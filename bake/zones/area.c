@@ -70,7 +70,7 @@ static uint32_t integrate(const areas *a, uint32_t cell, float area[3]) {
     const receiver *r = z->receivers + z->receiver_of[cell];
     const uint32_t side = z->c->side_of[cell];
     const cell_corners k = cells_corners(z->c, cell);
-    const float disc = 0.5f * PHOTON_PI * z->radius * z->radius; /* the kernel's integral over a plane */
+    const float disc = 0.5f * KERNEL_PI * z->radius * z->radius; /* the kernel's integral over a plane */
     const float fine = ZONES_FINE * z->radius;
     const bool small = cells_area(z->c, z->g, cell) < SMALL * fine * fine;
     float front[3], accepted[3], lit_alike[3];

@@ -2,7 +2,7 @@
  * pixel looks and of what the scene file or the model says of the lamp, so a wrong unit, cone or falloff shows as a figure. */
 #include "scene_lab.h"
 
-#include "reference/lights.h"
+#include "light/light_model.h"
 #include <math.h>
 
 #define PI 3.14159265358979323846

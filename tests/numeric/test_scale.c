@@ -7,10 +7,13 @@
  * their last bits there, before us. Where that shows the baker warns beforehand: the last point without a warning is held to a
  * bound. */
 #include "catalogue.h"
+#include "pack_sections.h"
+#include "reference/reference.h"
 #include "scene_lab.h"
+#include "tool_run.h"
 #include <math.h>
 
-enum { SIDE = 48, FLOATS = 4 * SIDE * SIDE };
+enum { SIDE = 48, FLOATS = 4 * SIDE * SIDE, DIRECT = 3 * SIDE * SIDE };
 
 typedef struct frame {
     float pixels[FLOATS];
@@ -87,6 +90,61 @@ static void a_scale_changes_the_frame_by_roundings_alone(void **state) {
     catalogue_row("scale", "powers of ten from 1e-8 to 1e5", worst, 3e-13, "NMSE");
 }
 
+/* The reference of the pack that render() made last: direct light, which leaves nothing to chance here, times exposure. */
+static void render_reference(scene_lab *l, double direct[DIRECT]) {
+    FILE *f = fopen(scene_lab_path(l, "scene.vit"), "rb");
+    struct stat size;
+    reference r;
+    vit_text why = {""};
+    assert_non_null(f);
+    assert_int_equal(fstat(fileno(f), &size), 0);
+    void *pack = aligned_alloc(4096, ((size_t)size.st_size + 4095) / 4096 * 4096);
+    assert_non_null(pack);
+    assert_int_equal(fread(pack, 1, (size_t)size.st_size, f), (size_t)size.st_size);
+    (void)fclose(f);
+    const pack_sections sections = pack_sections_of(pack);
+    const reference_input in = {
+        .sections = &sections, .every = 1, .bounces = 1, .target = 1.0, .max_samples = REFERENCE_ROUND, .threads = 1};
+    if (reference_render(&in, &r, &why) != VIT_OK)
+        fail_msg("reference_render: %s", why.text);
+    memcpy(direct, r.direct, DIRECT * sizeof *direct);
+    reference_free(&r);
+    free(pack);
+}
+
+/* Squared difference over squared mean. */
+static double apart(const double a[DIRECT], const double b[DIRECT]) {
+    double error = 0, sum = 0;
+    for (size_t i = 0; i < DIRECT; i++) {
+        error += (a[i] - b[i]) * (a[i] - b[i]);
+        sum += b[i];
+    }
+    return isfinite(error) ? error / DIRECT / pow(sum / DIRECT, 2) : INFINITY;
+}
+
+static void the_reference_has_the_same_light_at_every_scale(void **state) {
+    static float played[FLOATS];
+    static double whole[DIRECT], direct[DIRECT], frames[DIRECT];
+    static frame f;
+    double scales = 0, kernels = 0;
+    for (int exponent = 0; exponent >= -24; exponent -= catalogue_whole() ? 4 : 8) {
+        render(*state, exp2(exponent), 0.0, 0.0, &f);
+        render_reference(*state, direct);
+        scene_lab_play(*state, "direct", played, FLOATS);
+        for (size_t i = 0; i < DIRECT; i++)
+            frames[i] = (double)played[i / 3 * 4 + i % 3];
+        if (exponent == 0)
+            memcpy(whole, direct, sizeof whole);
+        scales = fmax(scales, apart(direct, whole));
+        kernels = fmax(kernels, apart(direct, frames));
+    }
+    render(*state, 1000.0, 0.0, 0.0, &f);
+    render_reference(*state, direct);
+    catalogue_row("scale", "reference, direct light: 2^-24 to 1 against itself at 1", scales, 0, "NMSE");
+    catalogue_row("scale", "the same against the frame, whose albedos have 10 bits", kernels, 5e-6, "NMSE");
+    catalogue_row("scale", "reference, direct light: 1000 against 1", apart(direct, whole), 1e-12, "NMSE");
+}
+
 static void a_power_of_two_changes_no_bit(void **state) {
     static frame f;
     uint64_t wrong = 0, count = 0;
@@ -135,9 +193,32 @@ static void distance_from_the_origin_changes_no_bit(void **state) {
     catalogue_row("far away", "the mesh file's own numbers far from 0; where nothing warns", worst, 3e-10, "NMSE");
 }
 
+/* Each number is within its own limits; at the least distance in a room of a micrometre they are more than a float holds. */
+static void light_that_a_small_scene_cannot_hold_is_refused_by_the_baker(void **state) {
+    static const double half[3] = {1e-6, 1e-6, 1e-6};
+    static tool_run run;
+    scene_lab *l = *state;
+    scene_lab_write_room(l, "room.obj", half, 0.0);
+    FILE *f = scene_lab_create(l, "bright.cfg");
+    (void)fprintf(f, "output: { width = 8; height = 8; fps = 1.0; frames = 1; };\n"
+                     "meshes = ( { file = \"room.obj\"; } );\n"
+                     "camera: { near = 1e-7; keys = ( { eye = [0.0, 0.0, 0.0]; target = [0.0, 0.0, -1e-6]; fov = 70.0; "
+                     "exposure = 1e9; } ); };\n"
+                     "lights = ( { type = \"point\"; keys = ( { position = [0.0, 0.0, -5e-7]; power = [1e9, 1e9, 1e9]; } ); "
+                     "} );\n"
+                     "quality: { photons = 0; };\n");
+    (void)fclose(f);
+    tool(&run, TOOL_BAKE " %s -o %s --quiet --no-check --device host", scene_lab_path(l, "bright.cfg"),
+         scene_lab_path(l, "bright.vit"));
+    tool_refuses(&run, "vitrine-bake", VIT_BAD_INPUT, "lights have to be weaker or the scene larger");
+    assert_int_not_equal(access(scene_lab_path(l, "bright.vit"), F_OK), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scale_changes_the_frame_by_roundings_alone),
+        cmocka_unit_test(the_reference_has_the_same_light_at_every_scale),
+        cmocka_unit_test(light_that_a_small_scene_cannot_hold_is_refused_by_the_baker),
         cmocka_unit_test(a_power_of_two_changes_no_bit),
         cmocka_unit_test(zones_areas_and_the_automatic_radius_follow_a_power_of_two),
         cmocka_unit_test(distance_from_the_origin_changes_no_bit),
