@@ -75,54 +75,76 @@ static inline li splat_touch(local const splat_batch *b, uint i, const splat_box
 
 /* A level's work: a work-group owns a node of the level, its work-items the node's children. The root's list, all photons, is
  * long: there, `chunks` work-groups each own a stretch of it, and splat_place puts the stretches' entries in order; chunks is 1
- * for the other levels. What stands between SPLAT_BEGIN and SPLAT_END runs for every batch of photons and every child of the
- * work-item, with batch, used (photons in it), begin (of the batch in the list), c (of the node's children), child and box in
- * scope. */
-#define SPLAT_OWNER                                                                                                            \
-    local splat_batch batch;                                                                                                   \
-    WORK_BEGIN                                                                                                                 \
-    uint chunk = (uint)get_group_id(0) % chunks, node = level_begin(scene, prefix, level) + (uint)get_group_id(0) / chunks;    \
-    int exists = node < level_end(scene, prefix, (global const uint *)counters, level, max_nodes);                             \
-    uint children = exists ? node_count[node] : 0, child_first = exists ? node_first[node] : 0;                                \
-    uint list_begin = exists && level > 0 ? list_first[node] : 0;                                                              \
-    uint list_size = !exists ? 0 : level > 0 ? list_count[node] : scene->photons;                                              \
-    uint stretch = (list_size + chunks - 1) / chunks, chunk_begin = min(chunk * stretch, list_size),                           \
-         chunk_end = min(chunk_begin + stretch, list_size);
+ * for the other levels. */
+typedef struct splat_owned {
+    uint chunk;                 /* the work-group's, of the node's stretches */
+    uint child_first, children; /* 0 children: the node does not exist */
+    uint list;                  /* where the node's list begins; the root has none */
+    uint begin, end;            /* the stretch, in the list */
+} splat_owned;
 
-#define SPLAT_BEGIN                                                                                                            \
-    for (uint begin = chunk_begin; begin < chunk_end; begin += SPLAT_BATCH) {                                                  \
-        barrier(CLK_LOCAL_MEM_FENCE);                                                                                          \
-        splat_load(&batch, photons, list + list_begin, level == 0, begin, chunk_end);                                          \
-        barrier(CLK_LOCAL_MEM_FENCE);                                                                                          \
-        uint used = min(chunk_end - begin, (uint)SPLAT_BATCH);                                                                 \
-        for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {                                     \
-            uint child = child_first + c;                                                                                      \
-            splat_box box = splat_node(bounds, max_nodes, child);                                                              \
-            WORK_ADD(node_tests, used);
+static inline splat_owned splat_own(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
+                                    global const uint *prefix, global const uint *node_first, global const uint *node_count,
+                                    global const uint *list_first, global const uint *list_count, global const uint *counters) {
+    splat_owned own;
+    uint group = (uint)get_group_id(0), node = level_begin(scene, prefix, level) + group / chunks;
+    int exists = node < level_end(scene, prefix, counters, level, max_nodes);
+    own.chunk = group % chunks;
+    own.child_first = exists ? node_first[node] : 0;
+    own.children = exists ? node_count[node] : 0;
+    own.list = exists && level > 0 ? list_first[node] : 0;
+    uint size = 0;
+    if (exists)
+        size = level > 0 ? list_count[node] : scene->photons;
+    uint stretch = (size + chunks - 1) / chunks;
+    own.begin = min(own.chunk * stretch, size);
+    own.end = min(own.begin + stretch, size);
+    return own;
+}
 
-#define SPLAT_END                                                                                                              \
-    }                                                                                                                          \
-    }
+/* Fills the batch from photon `begin` of the owner's list on, once all work-items are done with the last one. How many photons
+ * are in it. All work-items of the group call this together. */
+static inline uint splat_fill(local splat_batch *b, const splat_owned *own, global const vit_photon *photons,
+                              global const uint *list, uint level, uint begin) {
+    barrier(CLK_LOCAL_MEM_FENCE);
+    splat_load(b, photons, list + own->list, level == 0, begin, own->end);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    return min(own->end - begin, (uint)SPLAT_BATCH);
+}
+
+/* The lowest bit that is set: the first lane of a mask. */
+static inline uint splat_lowest(uint bits) {
+    return 31u - (uint)clz(bits & (~bits + 1u));
+}
 
 #define SPLAT_CHILDREN 32 /* of a node, at most: places a chunk has in chunk_count */
 
 #if VIT_WITH(PHOTONS)
+/* How many photons each child gets, or of each stretch of the root's. */
 kernel void splat_count(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
                         global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
                         global const uint *node_count, global const int *bounds, global const uint *list_first,
                         global uint *list_count, global const uint *list, global uint *chunk_count,
                         global const uint *counters WORK_PARAMETERS) {
-    SPLAT_OWNER
-    global uint *counts = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : list_count + child_first;
-    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
+    local splat_batch batch;
+    WORK_BEGIN
+    splat_owned own =
+        splat_own(scene, max_nodes, level, chunks, prefix, node_first, node_count, list_first, list_count, counters);
+    global uint *counts = level == 0 ? chunk_count + own.chunk * SPLAT_CHILDREN : list_count + own.child_first;
+    for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0))
         counts[c] = 0;
-    SPLAT_BEGIN
-    uint sum = 0;
-    for (uint i = 0; i < used; i += VIT_LANES)
-        sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
-    counts[c] += sum;
-    WORK_ADD(pairs, level + 1 == scene->levels ? sum : 0);
-    SPLAT_END
+    for (uint begin = own.begin; begin < own.end; begin += SPLAT_BATCH) {
+        uint used = splat_fill(&batch, &own, photons, list, level, begin);
+        for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0)) {
+            splat_box box = splat_node(bounds, max_nodes, own.child_first + c);
+            WORK_ADD(node_tests, used);
+            uint sum = 0;
+            for (uint i = 0; i < used; i += VIT_LANES)
+                sum += (uint)popcount(l_bits(splat_touch(&batch, i, &box)));
+            counts[c] += sum;
+            WORK_ADD(pairs, level + 1 == scene->levels ? sum : 0);
+        }
+    }
     WORK_END
 }
 
@@ -175,24 +197,37 @@ kernel void splat_place(global const vit_scene *scene, uint max_nodes, uint max_
     }
 }
 
+/* Writes the lists of the level's children, in the places that splat_place gave them. */
 kernel void splat_write(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
                         global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
                         global const uint *node_count, global const int *bounds, global const uint *list_first,
                         global const uint *list_count, global uint *list, global uint *cursor, global uint *chunk_count,
                         global const uint *counters WORK_PARAMETERS) {
-    SPLAT_OWNER
-    global uint *cursors = level == 0 ? chunk_count + chunk * SPLAT_CHILDREN : cursor + child_first; /* written so far */
-    for (uint c = (uint)get_local_id(0); c < children && level > 0; c += (uint)get_local_size(0))
+    local splat_batch batch;
+    WORK_BEGIN
+    splat_owned own =
+        splat_own(scene, max_nodes, level, chunks, prefix, node_first, node_count, list_first, list_count, counters);
+    global uint *cursors =
+        level == 0 ? chunk_count + own.chunk * SPLAT_CHILDREN : cursor + own.child_first; /* written so far */
+    for (uint c = (uint)get_local_id(0); c < own.children && level > 0; c += (uint)get_local_size(0))
         cursors[c] = 0;
-    SPLAT_BEGIN
-    uint at = list_first[child] + cursors[c], end = list_first[child] + list_count[child];
-    for (uint i = 0; i < used; i += VIT_LANES) {
-        for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1, at++)
-            if (at < end)
-                list[at] = batch.id[i + 31u - (uint)clz(hits & (~hits + 1u))];
+    for (uint begin = own.begin; begin < own.end; begin += SPLAT_BATCH) {
+        uint used = splat_fill(&batch, &own, photons, list, level, begin);
+        for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0)) {
+            uint child = own.child_first + c;
+            splat_box box = splat_node(bounds, max_nodes, child);
+            WORK_ADD(node_tests, used);
+            uint at = list_first[child] + cursors[c], end = list_first[child] + list_count[child];
+            for (uint i = 0; i < used; i += VIT_LANES) {
+                for (uint hits = l_bits(splat_touch(&batch, i, &box)); hits != 0; hits &= hits - 1) {
+                    if (at < end)
+                        list[at] = batch.id[i + splat_lowest(hits)];
+                    at++;
+                }
+            }
+            cursors[c] = at - list_first[child];
+        }
     }
-    cursors[c] = at - list_first[child];
-    SPLAT_END
     WORK_END
 }
 
@@ -207,41 +242,36 @@ static inline uint bucket_of(float x, float y, float z) {
         return (x < 0 ? 1u : 0u) | (y < 0 ? 2u : 0u) | (z < 0 ? 4u : 0u);
     float ax = fabs(x), ay = fabs(y), az = fabs(z);
     int on_x = ax >= ay && ax >= az, on_y = !on_x && ay >= az;
-    float major = on_x   ? x
-                  : on_y ? y
-                         : z,
-          u = on_x ? y : x, v = on_x || on_y ? z : y, scale = vit_div(1.5f, vit_max(fabs(major), 1e-9f));
+    float major = z;
+    if (on_x || on_y)
+        major = on_x ? x : y;
+    float u = on_x ? y : x, v = on_x || on_y ? z : y;
+    float scale = vit_div(1.5f, vit_max(fabs(major), 1e-9f));
     int iu = min((int)fma(u, scale, 1.5f), 2), iv = min((int)fma(v, scale, 1.5f), 2);
-    return (uint)((on_x ? 0 : on_y ? 2 : 4) + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
+    int axis = 4;
+    if (on_x || on_y)
+        axis = on_x ? 0 : 2;
+    return (uint)(axis + (major < 0 ? 1 : 0)) * 9u + (uint)(iv * 3 + iu);
 }
 
 #if VIT_WITH(BUCKETS)
-/* The clusters' level (chunks is 1): each photon's power goes, weighted by the kernel at the box's centre, into the bucket of
- * the direction that it comes from. */
-kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
-                          global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
-                          global const uint *node_count, global const int *bounds, global const uint *list_first,
-                          global uint *list_count, global const uint *list, volatile global uint *counters,
-                          global float *buckets WORK_PARAMETERS) {
-    uint pairs = 0;
-    SPLAT_OWNER
-    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0)) {
-        list_count[child_first + c] = 0;
-        for (uint i = 0; i < BUCKETS; i++)
-            vstore4(VIT_FLOAT4(0, 0, 0, 0), (child_first + c) * BUCKETS + i, buckets);
-    }
-    SPLAT_BEGIN
-    float cx = 0.5f * (box.lo[0] + box.hi[0]), cy = 0.5f * (box.lo[1] + box.hi[1]), cz = 0.5f * (box.lo[2] + box.hi[2]);
+/* Adds photons of the batch to the child's buckets: their power, weighted by the kernel at the box's centre, into the bucket of
+ * the direction that they come from. How many touch the box. */
+static inline uint splat_into_buckets(global const vit_scene *scene, local const splat_batch *b, uint used,
+                                      const splat_box *box, global const vit_photon *photons, uint child,
+                                      global float *buckets) {
+    float cx = 0.5f * (box->lo[0] + box->hi[0]), cy = 0.5f * (box->lo[1] + box->hi[1]), cz = 0.5f * (box->lo[2] + box->hi[2]);
     uint sum = 0;
     for (uint i = 0; i < used; i += VIT_LANES) {
-        uint hits = l_bits(splat_touch(&batch, i, &box));
+        uint hits = l_bits(splat_touch(b, i, box));
         if (hits == 0)
             continue;
         sum += (uint)popcount(hits);
-        lf ox = SPLAT_LOAD(batch.x + i) - cx, oy = SPLAT_LOAD(batch.y + i) - cy, oz = SPLAT_LOAD(batch.z + i) - cz;
-        lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(batch.radius2 + i);
+        /* 1. The kernel's weight at the centre. */
+        lf ox = SPLAT_LOAD(b->x + i) - cx, oy = SPLAT_LOAD(b->y + i) - cy, oz = SPLAT_LOAD(b->z + i) - cz;
+        lf d2 = fma(oz, oz, fma(oy, oy, ox * ox)), r2 = SPLAT_LOAD(b->radius2 + i);
         if (VIT_EFFECT_FLATTENED) {
-            float mx = box.nlo[0] + box.nhi[0], my = box.nlo[1] + box.nhi[1], mz = box.nlo[2] + box.nhi[2];
+            float mx = box->nlo[0] + box->nhi[0], my = box->nlo[1] + box->nhi[1], mz = box->nlo[2] + box->nhi[2];
             float m2 = fma(mz, mz, fma(my, my, mx * mx)), unit = m2 > 0 ? vit_div(1.0f, vit_sqrt(m2)) : 0;
             lf off = fma(oz, L_F(mz * unit), fma(oy, L_F(my * unit), ox * (mx * unit)));
             d2 = fma(off * off, L_F(scene->flatten), d2);
@@ -249,21 +279,49 @@ kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint le
         hits &= l_bits(L_LT(d2, r2));
         float weight[VIT_LANES];
         L_STORE(1.0f - l_div(d2, r2), weight);
+        /* 2. Photons one after another, in their order. */
         for (; hits != 0; hits &= hits - 1) {
-            uint lane = 31u - (uint)clz(hits & (~hits + 1u)), k = i + lane;
-            global const vit_photon *p = photons + batch.id[k];
-            uint at = child * BUCKETS + bucket_of(-batch.dx[k], -batch.dy[k], -batch.dz[k]);
+            uint lane = splat_lowest(hits), k = i + lane;
+            global const vit_photon *p = photons + b->id[k];
+            uint at = child * BUCKETS + bucket_of(-b->dx[k], -b->dy[k], -b->dz[k]);
             vstore4(vload4(at, buckets) + VIT_FLOAT4(p->power[0], p->power[1], p->power[2], 1.0f) * weight[lane], at, buckets);
         }
     }
-    list_count[child] += sum;
-    pairs += sum;
-    WORK_ADD(pairs, sum);
-    SPLAT_END
+    return sum;
+}
+
+/* The clusters' level (chunks is 1): photons go into buckets rather than lists. */
+kernel void splat_buckets(global const vit_scene *scene, uint max_nodes, uint level, uint chunks,
+                          global const vit_photon *photons, global const uint *prefix, global const uint *node_first,
+                          global const uint *node_count, global const int *bounds, global const uint *list_first,
+                          global uint *list_count, global const uint *list, volatile global uint *counters,
+                          global float *buckets WORK_PARAMETERS) {
+    uint pairs = 0;
+    local splat_batch batch;
+    WORK_BEGIN
+    splat_owned own = splat_own(scene, max_nodes, level, chunks, prefix, node_first, node_count, list_first, list_count,
+                                (global const uint *)counters);
+    for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0)) {
+        list_count[own.child_first + c] = 0;
+        for (uint i = 0; i < BUCKETS; i++)
+            vstore4(VIT_FLOAT4(0, 0, 0, 0), (own.child_first + c) * BUCKETS + i, buckets);
+    }
+    for (uint begin = own.begin; begin < own.end; begin += SPLAT_BATCH) {
+        uint used = splat_fill(&batch, &own, photons, list, level, begin);
+        for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0)) {
+            uint child = own.child_first + c;
+            splat_box box = splat_node(bounds, max_nodes, child);
+            WORK_ADD(node_tests, used);
+            uint sum = splat_into_buckets(scene, &batch, used, &box, photons, child, buckets);
+            list_count[child] += sum;
+            pairs += sum;
+            WORK_ADD(pairs, sum);
+        }
+    }
     WORK_END
     if (pairs > 0)
         atomic_add(counters + VIT_COUNTER_pairs, pairs);
-    for (uint c = (uint)get_local_id(0); c < children; c += (uint)get_local_size(0))
-        atomic_max(counters + VIT_COUNTER_largest, list_count[child_first + c]);
+    for (uint c = (uint)get_local_id(0); c < own.children; c += (uint)get_local_size(0))
+        atomic_max(counters + VIT_COUNTER_largest, list_count[own.child_first + c]);
 }
 #endif
