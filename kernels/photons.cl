@@ -101,6 +101,47 @@ static inline void photon_store(global vit_photon *photons, uint slot, li valid,
 }
 
 #if VIT_WITH(TRACED)
+/* The light of a packet and its photons as they leave it (13): lanes with a photon; without a light none. */
+static inline li photon_start(global const vit_scene *scene, global const vit_light *lights, uint frame, uint first,
+                              global const vit_light **light, lv3 *o, lv3 *d, lv3 *power) {
+    *light = lights + (size_t)frame * scene->lights;
+    *o = *d = *power = lv3_set(L_F(0), L_F(0), L_F(0));
+    for (uint i = 0; i < scene->lights; i++, ++*light)
+        if ((*light)->path_count > 0 && first >= (*light)->path_first && first < (*light)->path_first + (*light)->path_count)
+            break;
+    if (*light >= lights + (size_t)(frame + 1) * scene->lights)
+        return L_I(0);
+    lu path = L_U(first) + L_AS_UINT(L_INDEX);
+    lf weight;
+    *d = photon_emission(*light, path, o, &weight);
+    float whole = 2.0f * VIT_PI * (1.0f - (*light)->cos_outer); /* sr; directional: m2 of the disc */
+    if (VIT_EFFECT_DIRECTIONAL && (*light)->kind == VIT_LIGHT_DIRECTIONAL)
+        whole = VIT_PI * (*light)->spot_scale * (*light)->spot_scale;
+    lf share = weight * vit_div(whole, (float)(*light)->path_count);
+    *power = lv3_scale(lv3_load((*light)->intensity), share);
+    return L_LT(path, L_U((*light)->path_first + (*light)->path_count)) & L_GT(share, L_F(0));
+}
+
+/* On from mirrors and glass, for lanes `specular`: where to and whence, and what the surface leaves of the light. u: random,
+ * decides at glass; t: the way there. */
+static inline void photon_on(const surface *s, li specular, lf u, lf t, lv3 d, lv3 *o, lv3 *next, lv3 *reflectance,
+                             lv3 *power) {
+    lv3 start = s->position, on = specular_mirrored(d, s->normal, s->face), tint = s->specular.specular;
+    li glass = specular & L_NE(s->specular.kind, L_I((int)VIT_MIRROR));
+    if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
+        li thin = L_EQ(s->specular.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s->back & ~thin;
+        specular_paths p = specular_at_glass(d, s->normal, s->face, s->back, thin, s->specular.ior);
+        li through = glass & L_GE(u, p.mirror);
+        *power = lv3_sel(inside, specular_left(*power, s->specular.absorption, t), *power);
+        on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
+        start = lv3_sel(through, s->beyond, start);
+        tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
+    }
+    *next = lv3_sel(specular, on, *next);
+    *o = lv3_sel(specular, start, *o);
+    *reflectance = lv3_sel(specular, tint, *reflectance);
+}
+
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
 kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides,
                          global const uint *cells, global vit_photon *photons, volatile global uint *counters,
@@ -108,28 +149,18 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
         return;
-    global const vit_light *light = lights + (size_t)frame * scene->lights;
-    for (uint i = 0; i < scene->lights; i++, light++)
-        if (light->path_count > 0 && first >= light->path_first && first < light->path_first + light->path_count)
-            break;
-    lu path = L_U(first) + L_AS_UINT(L_INDEX); /* 1. The light's part of the paths, (13) */
-    li alive = L_I(0);
-    lv3 o = lv3_set(L_F(0), L_F(0), L_F(0)), d = o, power = o,
-        from = o; /* from: normal of the matt surface that the photon comes from; 0: of none */
-    if (light < lights + (size_t)(frame + 1) * scene->lights) {
-        lf weight;
-        d = photon_emission(light, path, &o, &weight);
-        float whole = 2.0f * VIT_PI * (1.0f - light->cos_outer); /* sr; directional: m2 of the disc */
-        if (VIT_EFFECT_DIRECTIONAL && light->kind == VIT_LIGHT_DIRECTIONAL)
-            whole = VIT_PI * light->spot_scale * light->spot_scale;
-        lf share = weight * vit_div(whole, (float)light->path_count);
-        power = lv3_scale(lv3_load(light->intensity), share);
-        alive = L_LT(path, L_U(light->path_first + light->path_count)) & L_GT(share, L_F(0));
-    }
+    /* 1. The light's part of the paths. */
+    global const vit_light *light;
+    lu path = L_U(first) + L_AS_UINT(L_INDEX);
+    lv3 o, d, power;
+    li alive = photon_start(scene, lights, frame, first, &light, &o, &d, &power);
+    /* Normal of the matt surface that the photon comes from; 0: of none. */
+    lv3 from = lv3_set(L_F(0), L_F(0), L_F(0));
     uint stored = 0;
     WORK_BEGIN
     for (uint hit_number = 0; hit_number < scene->bounces; hit_number++) {
-        lf t = L_F(3e38f); /* 2. What the ray meets */
+        /* 2. What the ray meets. */
+        lf t = L_F(3e38f);
         li triangle = L_I(0);
         surface s = surface_none(o);
         if (l_any(alive)) {
@@ -152,7 +183,8 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             if (!VIT_EFFECT_CAUSTICS)
                 alive = matt;
         }
-        if (hit_number > 0) { /* 3. A photon, (15) and (21) */
+        /* 3. A photon, (15) and (21). */
+        if (hit_number > 0) {
             lu zone = L_U(0);
             if (VIT_EFFECT_ZONES && l_any(alive)) {
                 cell_place cell = cell_at(sides, alive, triangle, s.back, s.b1, s.b2);
@@ -163,32 +195,22 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             stored += popcount(l_bits(matt));
         }
         if (hit_number + 1 == scene->bounces || !l_any(alive))
-            continue;                            /* slots of dead paths are still written, as empty */
-        if (VIT_EFFECT_RANGE && hit_number == 0) /* the same light that direct lighting sees */
+            continue; /* slots of dead paths are still written, as empty */
+        /* The same light that direct lighting sees. */
+        if (VIT_EFFECT_RANGE && hit_number == 0)
             power = lv3_scale(power, light_left(light, t * t));
-        lv3 reflectance = VIT_EFFECT_SPECULAR ? lv3_along(s.albedo, s.specular.specular, L_F(1)) : s.albedo, next;
-        lf u, v; /* 4. On from a matt surface, (14) */
+        /* 4. On from a matt surface, (14). */
+        lv3 reflectance = VIT_EFFECT_SPECULAR ? lv3_along(s.albedo, s.specular.specular, L_F(1)) : s.albedo;
+        lf u, v;
         photon_numbers(path, hit_number, &u, &v);
-        next = ray_cosine(s.face, u, v);
+        lv3 next = ray_cosine(s.face, u, v);
         o = s.position;
         from = lv3_sel(matt, s.face, lv3_set(L_F(0), L_F(0), L_F(0)));
-        if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt)) { /* 5. On from mirrors and glass */
-            lv3 start = o, on = specular_mirrored(d, s.normal, s.face), tint = s.specular.specular;
-            li glass = alive & ~matt & L_NE(s.specular.kind, L_I((int)VIT_MIRROR));
-            if (VIT_EFFECT_GLASS && l_any(glass)) { /* Fresnel's part of the paths is mirrored */
-                li thin = L_EQ(s.specular.kind, L_I((int)VIT_THIN_GLASS)), inside = glass & s.back & ~thin;
-                specular_paths p = specular_at_glass(d, s.normal, s.face, s.back, thin, s.specular.ior);
-                li through = glass & L_GE(u, p.mirror);
-                power = lv3_sel(inside, specular_left(power, s.specular.absorption, t), power);
-                on = lv3_sel(glass, lv3_sel(through, p.refracted, p.mirrored), on);
-                start = lv3_sel(through, s.beyond, start);
-                tint = lv3_sel(glass & ~through, lv3_set(L_F(1), L_F(1), L_F(1)), tint);
-            }
-            next = lv3_sel(matt, next, on);
-            o = lv3_sel(matt, o, start);
-            reflectance = lv3_sel(matt, reflectance, tint);
-        }
-        power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z); /* 6. What is left */
+        /* 5. On from mirrors and glass. */
+        if (VIT_EFFECT_CAUSTICS && l_any(alive & ~matt))
+            photon_on(&s, alive & ~matt, u, t, d, &o, &next, &reflectance, &power);
+        /* 6. What is left. */
+        power = lv3_set(power.x * reflectance.x, power.y * reflectance.y, power.z * reflectance.z);
         alive &= L_GT(power.x + power.y + power.z, L_F(0));
         d = next;
     }

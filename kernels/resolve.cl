@@ -164,7 +164,8 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
     li inside = l_inside(scene, x, y);
     if (!l_any(inside))
         return;
-    float exposure = cameras[frame].exposure; /* 1. The pixel's light, of all its samples or of its only one */
+    /* 1. The pixel's light, of all its samples or of its only one. */
+    float exposure = cameras[frame].exposure;
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0)), c = zero;
     int display = 0; /* is c a display value already? */
@@ -175,7 +176,8 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         }
     } else
         c = sample_radiance(n, first, albedo, direct, indirect, specular, rays);
-    switch ((vit_view)VIT_VIEW) { /* 2. Or the method's insides */
+    /* 2. Or the method's insides. */
+    switch ((vit_view)VIT_VIEW) {
     case VIT_VIEW_final:
     case VIT_VIEW_direct:
     case VIT_VIEW_indirect:
@@ -210,7 +212,8 @@ kernel void resolve(global const vit_scene *scene, global const vit_camera *came
         exposure = 1.0f;
         break;
     }
-    if (!display) /* 3. To display values, and to memory */
+    /* 3. To display values, and to memory. */
+    if (!display)
         c = lv3_scale(c, L_F(exposure));
     if (VIT_FORMAT != VIT_FORMAT_RGBA32F && !display)
         c = lv3_set(srgb_curve(c.x), srgb_curve(c.y), srgb_curve(c.z));

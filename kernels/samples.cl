@@ -26,6 +26,32 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
     return lv3_set(c[0], c[1], c[2]);
 }
 
+/* Makes the packet's samples nothing: zeros. */
+static inline void samples_clear(global const vit_scene *scene, uint first, global float *position, global uint *normal,
+                                 global uint *albedo, global uint *accept, global float *inverse_area, global uint *specular) {
+    lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
+    sample_store_position(scene, zero, zero, L_I(0), position, first);
+    L_STORE(L_U(0), normal + first);
+    L_STORE(L_U(VIT_SAMPLE_NOTHING), albedo + first);
+    if (VIT_EFFECT_SPECULAR) {
+        L_STORE(L_U(0), specular + first);
+        L_STORE(L_U(0), specular + scene->samples + first);
+    }
+    if (VIT_EFFECT_ZONES)
+        L_STORE(L_U(0), accept + first);
+    if (VIT_EFFECT_AREA)
+        L_STORE(L_F(0), inverse_area + first);
+}
+
+/* Radiance of surfaces that needs no light source: emission and ambient light. */
+static inline lv3 sample_own_light(global const vit_scene *scene, const surface *s) {
+    if (!VIT_EFFECT_AMBIENT)
+        return s->emission;
+    lv3 all = VIT_EFFECT_SPECULAR ? lv3_along(s->albedo, s->specular.specular, L_F(1)) : s->albedo;
+    return lv3_set(fma(all.x, L_F(scene->ambient[0]), s->emission.x), fma(all.y, L_F(scene->ambient[1]), s->emission.y),
+                   fma(all.z, L_F(scene->ambient[2]), s->emission.z));
+}
+
 kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
                     global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
                     global const uint *cells, global float *position, global uint *normal, global uint *albedo,
@@ -41,13 +67,15 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
     li hit = L_NE(triangle, L_I((int)VIT_NONE));
     lv3 light = lv3_load(scene->background), eye = lv3_load(camera->eye), d = eye;
     lf t = l_sel(hit, L_LOAD(hit_distance + first), L_F(1)), whole = t;
-    if (VIT_EFFECT_CHAINS) { /* 1. The ray that found the sample */
+    /* 1. The ray that found the sample. */
+    if (VIT_EFFECT_CHAINS) {
         eye = chain_origin(rays, n, first);
         d = chain_direction(rays, n, first);
         whole = l_sel(hit, chain_length(rays, n, first), L_F(1));
     } else if (VIT_EFFECT_SKY_IMAGE || l_any(hit))
         d = l_camera_ray(scene, camera, round / layers, x, y);
-    if (VIT_EFFECT_SKY_IMAGE && l_any(~hit)) /* 2. Nothing is hit: the sky */
+    /* 2. Where nothing is hit, the sky. */
+    if (VIT_EFFECT_SKY_IMAGE && l_any(~hit))
         light = sky_radiance(scene, sky, d);
     if (VIT_EFFECT_REACH) {
         reach_note(scene, attributes, reached, hit, triangle, VIT_REACHED_VIEW);
@@ -56,53 +84,40 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
     }
     WORK_BEGIN
     WORK_LANES(surface_points, hit);
-    if (l_any(hit)) { /* 3. The surface: position, normal, reflectances */
+    /* 3. The surface: position, normal, reflectances. */
+    if (l_any(hit)) {
         lf cone = L_F(camera_cone(scene, camera, round / layers));
-        if (VIT_EFFECT_CHAINS) /* the footprint goes on widening behind a mirror as if it were flat */
+        /* The footprint goes on widening behind a mirror as if it were flat. */
+        if (VIT_EFFECT_CHAINS)
             cone *= l_div(whole, l_max(t, L_F(1e-30f)));
         surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
+        li emits = L_GT(s.emission.x + s.emission.y + s.emission.z, L_F(0));
         lu flags = l_sel_u(s.dark, L_U(VIT_SAMPLE_DARK), L_U(0));
         if (VIT_EFFECT_AREA_LIGHTS && VIT_EFFECT_EMISSION)
-            flags =
-                l_sel_u(L_GT(s.emission.x + s.emission.y + s.emission.z, L_F(0)) & ~s.dark, L_U(VIT_SAMPLE_AREA_LIGHT), flags);
+            flags = l_sel_u(emits & ~s.dark, L_U(VIT_SAMPLE_AREA_LIGHT), flags);
         L_STORE(l_sel_u(hit, l_encode_albedo(s.albedo) | flags, L_U(VIT_SAMPLE_NOTHING)), albedo + first);
         if (VIT_EFFECT_SPECULAR) {
             L_STORE(l_sel_u(hit, l_encode_albedo(s.specular.specular), L_U(0)), specular + first);
             L_STORE(l_sel_u(hit, L_AS_UINT(s.specular.exponent), L_U(0)), specular + n + first);
         }
-        lv3 own = s.emission; /* 4. Its own light */
-        if (VIT_EFFECT_AMBIENT) {
-            lv3 all = VIT_EFFECT_SPECULAR ? lv3_along(s.albedo, s.specular.specular, L_F(1)) : s.albedo;
-            own = lv3_set(fma(all.x, L_F(scene->ambient[0]), own.x), fma(all.y, L_F(scene->ambient[1]), own.y),
-                          fma(all.z, L_F(scene->ambient[2]), own.z));
-        }
-        light = lv3_sel(hit, own, light);
-        if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) { /* 5. What is baked for its cell */
+        /* 4. Its own light. */
+        light = lv3_sel(hit, sample_own_light(scene, &s), light);
+        /* 5. What is baked for its cell. */
+        if (VIT_EFFECT_ZONES || VIT_EFFECT_AREA) {
             cell_place cell = cell_at(sides, hit, triangle, s.back, s.b1, s.b2);
             if (VIT_EFFECT_ZONES)
                 L_STORE(l_sel_u(hit, cell_accept(cells, &cell), L_U(0)), accept + first);
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)),
-                          L_I((int)VIT_SAMPLE_NOTHING)))) { /* else all this stands there already */
-        lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
-        sample_store_position(scene, zero, zero, L_I(0), position, first);
-        L_STORE(L_U(0), normal + first);
-        L_STORE(L_U(VIT_SAMPLE_NOTHING), albedo + first);
-        if (VIT_EFFECT_SPECULAR) {
-            L_STORE(L_U(0), specular + first);
-            L_STORE(L_U(0), specular + n + first);
-        }
-        if (VIT_EFFECT_ZONES)
-            L_STORE(L_U(0), accept + first);
-        if (VIT_EFFECT_AREA)
-            L_STORE(L_F(0), inverse_area + first);
-    } else if (!VIT_EFFECT_SKY_IMAGE)
+    } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING))))
+        /* Else all this stands there already. */
+        samples_clear(scene, first, position, normal, albedo, accept, inverse_area, specular);
+    else if (!VIT_EFFECT_SKY_IMAGE)
         return;
     /* Radiance that needs no light source: emission, ambient light and background. Direct light is added to it. */
     lv3_store_planes(light, direct, n, first);
