@@ -1,4 +1,4 @@
-#include "report/report_parts.h"
+#include "common/json.h"
 #include "list_parts.h"
 #include <inttypes.h>
 

@@ -2,15 +2,13 @@
 #ifndef VIT_COST_REPORT_PARTS_H
 #define VIT_COST_REPORT_PARTS_H
 
+#include "common/json.h"
 #include "report/results.h"
 #include <stdio.h>
 
-/* ---- report_text.c: numbers and text in each language. Text that is no UTF-8 is mended with U+FFFD. ---- */
-void text_number(FILE *to, double value,
-                 const char *otherwise);    /* fewest digits that read back as `value`; `otherwise`: not finite */
-void text_json(FILE *to, const char *text); /* with its quotes; safe inside <script> as well */
-void text_csv(FILE *to, const char *text);  /* with its quotes */
-void text_html(FILE *to, const char *text); /* for elements and quoted attributes */
+/* ---- report_text.c: numbers and text in each language but JSON. Text that is no UTF-8 is mended with U+FFFD. ---- */
+void text_csv(FILE *to, const char *text);                    /* with its quotes */
+void text_html(FILE *to, const char *text);                   /* for elements and quoted attributes */
 void text_gnuplot(FILE *to, const char *text, uint32_t most); /* with its quotes; cut to `most` characters */
 uint32_t text_length(const char *text);                       /* characters, not bytes */
 void text_format(FILE *to, const char *format, double value); /* for people: one double, a real minus, a dash if not finite */

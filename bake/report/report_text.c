@@ -1,106 +1,45 @@
-/* report_text.c: numbers and text as JSON, CSV, HTML and gnuplot want them. */
+/* report_text.c: numbers and text as CSV, HTML and gnuplot want them; JSON: common/json.c. */
 #include "report/report_parts.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-void text_number(FILE *to, double value, const char *otherwise) {
-    if (!isfinite(value)) {
-        (void)fputs(otherwise, to);
-        return;
-    }
-    char digits[40];
-    for (int precision = 6; precision <= 17; precision++) {
-        (void)snprintf(digits, sizeof digits, "%.*g", precision, value);
-        if (strtod(digits, NULL) == value)
-            break;
-    }
-    (void)fputs(digits, to);
-}
-
-/* Bytes of the UTF-8 character that begins here (RFC 3629, without its overlong forms and surrogates); 0: none does. */
-static uint32_t character(const char *text) {
-    const unsigned char *t = (const unsigned char *)text;
-    if (t[0] < 0x80)
-        return 1;
-    const uint32_t count = t[0] >= 0xC2 && t[0] < 0xE0   ? 2
-                           : t[0] >= 0xE0 && t[0] < 0xF0 ? 3
-                           : t[0] >= 0xF0 && t[0] < 0xF5 ? 4
-                                                         : 0;
-    for (uint32_t i = 1; i < count; i++)
-        if ((t[i] & 0xC0) != 0x80)
-            return 0;
-    if ((t[0] == 0xE0 && t[1] < 0xA0) || (t[0] == 0xED && t[1] >= 0xA0) || (t[0] == 0xF0 && t[1] < 0x90) ||
-        (t[0] == 0xF4 && t[1] >= 0x90))
-        return 0;
-    return count;
-}
-
-/* One character, mended; returns where the next begins. */
-static const char *copy_character(FILE *to, const char *text) {
-    const uint32_t count = character(text);
-    if (count == 0) {
-        (void)fputs("\xEF\xBF\xBD", to);
-        return text + 1;
-    }
-    (void)fwrite(text, 1, count, to);
-    return text + count;
-}
-
-static bool control(char c) {
-    return (unsigned char)c < 0x20 || c == 0x7F;
-}
-
-void text_json(FILE *to, const char *text) {
-    (void)fputc('"', to);
-    while (*text) {
-        if (*text == '"' || *text == '\\')
-            (void)fprintf(to, "\\%c", *text++);
-        else if (control(*text) || *text == '<' || *text == '>' || *text == '&')
-            (void)fprintf(to, "\\u%04x", (unsigned)(unsigned char)*text++);
-        else
-            text = copy_character(to, text);
-    }
-    (void)fputc('"', to);
-}
 
 void text_csv(FILE *to, const char *text) {
     (void)fputc('"', to);
     while (*text) {
         if (*text == '"')
             (void)fputc('"', to);
-        if (control(*text)) {
+        if (text_is_control(*text)) {
             (void)fputc(' ', to);
             text++;
         } else
-            text = copy_character(to, text);
+            text = text_copy_character(to, text);
     }
     (void)fputc('"', to);
 }
 
 void text_html(FILE *to, const char *text) {
     while (*text) {
-        const char *entity = *text == '&'     ? "&amp;"
-                             : *text == '<'   ? "&lt;"
-                             : *text == '>'   ? "&gt;"
-                             : *text == '"'   ? "&quot;"
-                             : *text == '\''  ? "&#39;"
-                             : control(*text) ? " "
-                                              : NULL;
+        const char *entity = *text == '&'             ? "&amp;"
+                             : *text == '<'           ? "&lt;"
+                             : *text == '>'           ? "&gt;"
+                             : *text == '"'           ? "&quot;"
+                             : *text == '\''          ? "&#39;"
+                             : text_is_control(*text) ? " "
+                                                      : NULL;
         if (entity) {
             (void)fputs(entity, to);
             text++;
         } else
-            text = copy_character(to, text);
+            text = text_copy_character(to, text);
     }
 }
 
 uint32_t text_length(const char *text) {
     uint32_t length = 0;
     for (; *text; length++) {
-        const uint32_t count = character(text);
+        const uint32_t count = text_character(text);
         text += count ? count : 1;
     }
     return length;
@@ -112,13 +51,13 @@ void text_gnuplot(FILE *to, const char *text, uint32_t most) {
     const bool cut = text_length(text) > most;
     (void)fputc('\'', to);
     for (uint32_t i = 0; *text && i < (cut ? most - 1 : most); i++) {
-        if (control(*text) || *text == '`' || *text == '\\') {
+        if (text_is_control(*text) || *text == '`' || *text == '\\') {
             (void)fputc(' ', to);
             text++;
         } else {
             if (*text == '\'')
                 (void)fputc('\'', to);
-            text = copy_character(to, text);
+            text = text_copy_character(to, text);
         }
     }
     (void)fputs(cut ? "\xE2\x80\xA6'" : "'", to);
