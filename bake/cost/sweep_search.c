@@ -1,4 +1,5 @@
 /* Which settings are tried. Errors and work are exact, so that every machine tries the same ones. */
+#include "cost/pareto.h"
 #include "cost/sweep_parts.h"
 #include <stdlib.h>
 #include <string.h>
@@ -21,15 +22,8 @@ static vit_status take_over(sweep *s, vit_text *why) {
     return status == VIT_OK ? sweep_errors(s, why) : status;
 }
 
-static bool on_pareto_front(const cost_results *r, uint32_t i) {
-    const cost_setting *s = &r->settings[i];
-    for (uint32_t k = 0; k < r->count; k++) {
-        const cost_setting *o = &r->settings[k];
-        if (!o->elsewhere && o->work <= s->work && o->total.nmse <= s->total.nmse &&
-            (o->work < s->work || o->total.nmse < s->total.nmse || k < i))
-            return false;
-    }
-    return !s->elsewhere;
+static pareto_point work_and_nmse(const cost_setting *s) {
+    return (pareto_point){(double)s->work, s->total.nmse};
 }
 
 /* One step from every setting on the front, then the next step, until the round is full. */
@@ -40,7 +34,7 @@ static vit_status add_round(sweep *s, vit_text *why) {
     for (uint32_t step = 0; more && status == VIT_OK; step++) {
         more = false;
         for (uint32_t i = 0; i < s->out->count && s->knobs.count < upto && status == VIT_OK; i++)
-            if (on_pareto_front(s->out, i))
+            if (pareto_on_front(s->out, i, work_and_nmse))
                 more |= knobs_beside(&s->knobs, i, step, &status, why);
     }
     return status;
