@@ -1,4 +1,5 @@
 #include "pack/bounds.h"
+#include "pack/opened.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,17 +11,13 @@
 
 /* A pack in memory, opened. */
 typedef struct run {
-    void *pack, *arena;
-    uint8_t *frame;
-    size_t stride;
-    vit *v;
+    void *pack;
+    opened o;
 } run;
 
 static void run_end(run *r) {
-    vit_close(r->v);
+    opened_end(&r->o);
     free(r->pack);
-    free(r->arena);
-    free(r->frame);
     memset(r, 0, sizeof *r);
 }
 
@@ -31,7 +28,6 @@ static vit_status out_of_memory(vit_text *why) {
 
 static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool dark_sides,
                             vit_text *why) {
-    vit_requirements need;
     vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
     info.record_reach = dark_sides;
     info.count_work = dark_sides && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
@@ -40,21 +36,14 @@ static vit_status run_begin(run *r, const bounds_input *in, const pack_sections 
     if (status != VIT_OK)
         return status;
     info.pack = r->pack;
-    status = vit_require(&info, &need, why);
-    if (status == VIT_OK) {
-        r->arena = info.arena = aligned_alloc(64, need.host_bytes);
-        info.arena_size = need.host_bytes;
-        r->frame = malloc(need.frame_bytes);
-        r->stride = need.frame_bytes / need.height;
-        status = r->arena && r->frame ? vit_open(&info, &r->v, why) : out_of_memory(why);
-    }
+    status = opened_begin(&info, &r->o, why);
     if (status != VIT_OK)
         run_end(r);
     return status;
 }
 
 static vit_status frame(bounds_input *in, run *r, uint32_t index, const char *stage, vit_text *why) {
-    vit_status status = vit_frame(r->v, index, r->frame, r->stride, why);
+    vit_status status = opened_frame(&r->o, index, why);
     if (in->progress)
         in->progress(in->user, stage, (index + 1.0) / in->scene->frames);
     return status;
@@ -100,7 +89,7 @@ static vit_status measure_slices(bounds_input *in, vit_text *why) {
         vit_statistics stats;
         status = frame(in, &r, i, "depth slices", why);
         if (status == VIT_OK)
-            status = vit_stats(r.v, &stats, why);
+            status = vit_stats(r.o.v, &stats, why);
         if (status != VIT_OK || stats.slice_min > stats.slice_max) /* nothing in view */
             continue;
         least = stats.slice_min < least ? stats.slice_min : least;
@@ -129,7 +118,7 @@ static vit_status note_reached(bounds_input *in, const run *r, const vit_statist
     uint64_t tests = 0;
     for (uint32_t p = 0; p < t->pass_count && t->work_count > 0; p++)
         tests += t->pass_work[p][VIT_WORK_cutout_tests];
-    const vit_status status = vit_reached(r->v, words, in->scene->materials + VIT_REACHED_MORE, why);
+    const vit_status status = vit_reached(r->o.v, words, in->scene->materials + VIT_REACHED_MORE, why);
     if (status == VIT_OK)
         effects_note(in->reached, in->scene->materials, words, tests, index);
     return status;
@@ -149,7 +138,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         vit_statistics t;
         status = frame(in, &r, *next, "frames", why);
         if (status == VIT_OK)
-            status = vit_stats(r.v, &t, why);
+            status = vit_stats(r.o.v, &t, why);
         if (status != VIT_OK)
             break;
         if (t.nodes > s->max_nodes || t.list > s->max_list) {
@@ -171,7 +160,7 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
         *nodes = t.nodes > *nodes ? t.nodes : *nodes;
         *list = t.list > *list ? t.list : *list;
         vit_gold *g = &in->gold[*next];
-        split(vit_gold_hash(g, VIT_FORMAT_XRGB8888), vit_hash_frame(r.frame, VIT_FORMAT_XRGB8888, r.stride * s->height));
+        split(vit_gold_hash(g, VIT_FORMAT_XRGB8888), vit_hash_frame(r.o.frame, VIT_FORMAT_XRGB8888, r.o.stride * s->height));
         g->nodes = t.nodes;
         g->clusters = t.clusters;
         g->photons = t.photons;
@@ -195,7 +184,7 @@ static vit_status hash_format(bounds_input *in, vit_format format, vit_text *why
     vit_status status = run_begin(&r, in, in->sections, format, false, why);
     for (uint32_t i = 0; i < in->scene->frames && status == VIT_OK; i++) {
         status = frame(in, &r, i, names[format], why);
-        split(vit_gold_hash(&in->gold[i], format), vit_hash_frame(r.frame, format, r.stride * in->scene->height));
+        split(vit_gold_hash(&in->gold[i], format), vit_hash_frame(r.o.frame, format, r.o.stride * in->scene->height));
     }
     run_end(&r);
     return status;
@@ -221,7 +210,7 @@ vit_status bounds_count_photons(bounds_input *in, double *stored, vit_text *why)
         vit_statistics t;
         status = frame(in, &r, i * (s->frames - 1) / (probes > 1 ? probes - 1 : 1), "photon radius", why);
         if (status == VIT_OK)
-            status = vit_stats(r.v, &t, why);
+            status = vit_stats(r.o.v, &t, why);
         *stored += status == VIT_OK ? (double)t.photons / probes : 0;
     }
     run_end(&r);

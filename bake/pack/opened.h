@@ -1,6 +1,6 @@
 /* opened.c: a pack in memory, opened with the memory that it asks for. */
-#ifndef VIT_COST_OPENED_H
-#define VIT_COST_OPENED_H
+#ifndef VIT_BAKE_OPENED_H
+#define VIT_BAKE_OPENED_H
 
 #include "vitrine.h"
 
