@@ -1,24 +1,20 @@
 /* The method of kernels/photons.cl, step for step and operation for operation; hits are the kernels', too, of triangles
  * that Embree proposes (triangle_rays.c). Power: see vit_photon. */
 #include "light/photons.h"
+#include "common/parallel.h"
 #include "light/light_model.h"
 #include "light/photon_emission.h"
 #include "light/photon_specular.h"
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #define CHUNK 1024u /* paths that a thread takes at a time */
-#define MAX_THREADS 256u
 
 typedef struct baking {
     const photons_input *in;
     photon_rays rays;
-    vit_photon *slots;         /* zero: empty */
-    uint64_t paths;            /* of all lights */
-    atomic_uint_fast64_t next; /* chunk */
+    vit_photon *slots; /* zero: empty */
+    uint64_t paths;    /* of all lights */
 } baking;
 
 /* The bounce's two random numbers; photon_numbers() of kernels/photons.cl. */
@@ -127,11 +123,14 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
     }
 }
 
-static void trace_chunk(const baking *b, uint64_t chunk) {
-    const uint64_t last = (chunk + 1) * CHUNK < b->paths ? (chunk + 1) * CHUNK : b->paths;
+/* Threads touch no slot twice, so their order leaves no trace. */
+static void trace_chunk(void *user, uint32_t chunk, uint64_t *sum) {
+    const baking *b = user;
+    const uint64_t begin = (uint64_t)chunk * CHUNK, last = begin + CHUNK < b->paths ? begin + CHUNK : b->paths;
+    (void)sum;
     const photons_light *l = b->in->lights;
     uint64_t first = 0; /* path of light l */
-    for (uint64_t path = chunk * CHUNK; path < last; path++) {
+    for (uint64_t path = begin; path < last; path++) {
         while (path - first >= l->paths)
             first += l++->paths;
         vit_photon *slots = b->slots + first * (b->in->bounces - 1);
@@ -139,35 +138,10 @@ static void trace_chunk(const baking *b, uint64_t chunk) {
     }
 }
 
-/* Takes chunks until none is left. Threads touch no slot twice, so their order leaves no trace. */
-static void trace_chunks(baking *b, bool reports) {
-    const uint64_t chunks = (b->paths + CHUNK - 1) / CHUNK;
-    for (;;) {
-        const uint64_t chunk = atomic_fetch_add(&b->next, 1);
-        if (chunk >= chunks)
-            return;
-        trace_chunk(b, chunk);
-        if (reports && b->in->progress)
-            b->in->progress(b->in->user, (double)chunk / (double)chunks);
-    }
-}
-
-static void *worker(void *user) {
-    trace_chunks(user, false);
-    return NULL;
-}
-
-/* On `threads` threads, this one included; on fewer if the system gives no more. */
-static void trace_all(baking *b, unsigned threads) {
-    pthread_t pool[MAX_THREADS];
-    unsigned started = 0;
-    while (started + 1 < threads && pthread_create(pool + started, NULL, worker, b) == 0)
-        started++;
-    trace_chunks(b, true);
-    for (unsigned i = 0; i < started; i++)
-        pthread_join(pool[i], NULL);
+static void report(void *user, double fraction) {
+    const baking *b = user;
     if (b->in->progress)
-        b->in->progress(b->in->user, 1.0);
+        b->in->progress(b->in->user, fraction);
 }
 
 /* Moves the photons to the front, in their order; how many there are. */
@@ -177,12 +151,6 @@ static uint32_t compact(vit_photon *slots, size_t count) {
         if (slots[i].radius2 > 0.0f)
             slots[kept++] = slots[i];
     return kept;
-}
-
-static unsigned thread_count(unsigned asked) {
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    const unsigned threads = asked ? asked : cores > 0 ? (unsigned)cores : 1;
-    return threads < MAX_THREADS ? threads : MAX_THREADS;
 }
 
 /* Counts the paths of all lights. Both they and the slots must stay below 2^32: path numbers and photon indices are 32 bits. */
@@ -220,7 +188,7 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
     const vit_status status = count_paths(in, &b.paths, why);
     if (status != VIT_OK || b.paths == 0)
         return status;
-    threads = thread_count(threads);
+    threads = parallel_threads(threads, 1);
     const size_t slots = (size_t)b.paths * (in->bounces - 1);
     b.slots = slots <= SIZE_MAX / sizeof *b.slots ? calloc(slots, sizeof *b.slots) : NULL;
     if (!b.slots || !photon_rays_open(&s, threads, &b.rays)) {
@@ -228,7 +196,15 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
         free(b.slots);
         return VIT_FAILED;
     }
-    trace_all(&b, threads);
+    const parallel_work work = {.run = trace_chunk,
+                                .done = report,
+                                .user = &b,
+                                .step = 1,
+                                .count = (uint32_t)((b.paths + CHUNK - 1) / CHUNK),
+                                .threads = threads};
+    uint64_t sum = 0;
+    (void)parallel_run(&work, &sum); /* cannot be cancelled */
+    report(&b, 1.0);
     photon_rays_close(&b.rays);
     *count = compact(b.slots, slots);
     *out = *count ? realloc(b.slots, *count * sizeof *b.slots) : NULL;

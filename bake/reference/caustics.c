@@ -1,5 +1,5 @@
 #include "reference/caustics.h"
-#include "reference/chunks.h"
+#include "common/parallel.h"
 #include "light/light_model.h"
 #include "reference/sequence.h"
 #include <stdlib.h>
@@ -141,9 +141,9 @@ static caustic_photon *trace(const path_scene *p, uint32_t number, unsigned thre
     w.slots = calloc(w.paths, sizeof *w.slots);
     if (!w.slots)
         return NULL;
-    const chunk_work work = {
+    const parallel_work work = {
         .run = trace_chunk, .user = &w, .step = 1, .count = (w.paths + CHUNK - 1) / CHUNK, .threads = threads};
-    (void)chunks_run(&work, rays); /* cannot be cancelled */
+    (void)parallel_run(&work, rays); /* cannot be cancelled */
     *count = 0;
     for (uint32_t i = 0; i < w.paths; i++)
         *count += w.slots[i].passed > 0;

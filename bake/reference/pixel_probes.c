@@ -1,6 +1,6 @@
 #include "reference/pixel_probes.h"
 #include "reference/caustics.h"
-#include "reference/chunks.h"
+#include "common/parallel.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,12 +64,12 @@ static void path_chunk(void *user, uint32_t chunk, uint64_t *rays) {
 
 static void run_chunks(tracing *t, void (*run)(void *, uint32_t, uint64_t *)) {
     uint64_t rays = 0;
-    const chunk_work w = {.run = run,
-                          .user = t,
-                          .step = 1,
-                          .count = (t->count + CHUNK - 1) / CHUNK,
-                          .threads = chunks_threads(t->in->threads, 1)};
-    (void)chunks_run(&w, &rays);
+    const parallel_work w = {.run = run,
+                             .user = t,
+                             .step = 1,
+                             .count = (t->count + CHUNK - 1) / CHUNK,
+                             .threads = parallel_threads(t->in->threads, 1)};
+    (void)parallel_run(&w, &rays);
 }
 
 static void free_caustics(tracing *t) {
@@ -80,7 +80,7 @@ static void free_caustics(tracing *t) {
 
 /* The round's photons of each frame, a sequence's own each. False: out of memory. */
 static bool trace_caustics(tracing *t) {
-    const unsigned threads = chunks_threads(t->in->threads, 1);
+    const unsigned threads = parallel_threads(t->in->threads, 1);
     uint64_t rays = 0;
     free_caustics(t);
     for (uint32_t i = 0; i < t->frame_count; i++) {
@@ -169,7 +169,7 @@ static vit_status trace(tracing *t, vit_text *why) {
 
 /* A scene for each frame that has spots. */
 static bool open_frames(tracing *t) {
-    const unsigned threads = chunks_threads(t->in->threads, 1);
+    const unsigned threads = parallel_threads(t->in->threads, 1);
     for (uint32_t i = 0; i < t->count; i++) {
         const uint32_t frame = t->spots[i].frame;
         if (t->frame_count == 0 || t->frames[t->frame_count - 1].frame != frame) {
@@ -201,7 +201,7 @@ vit_status spots_render(const spots_input *in, spot *spots, uint32_t count, uint
                  .sums = calloc(count + 1u, sizeof *t.sums)};
     vit_status status = VIT_FAILED;
     snprintf(why->text, sizeof why->text, "check: out of memory, or Embree fails");
-    if (t.frames && t.frame_of && t.views && t.sums && paths_open(&input, chunks_threads(in->threads, 1), &t.base)) {
+    if (t.frames && t.frame_of && t.views && t.sums && paths_open(&input, parallel_threads(in->threads, 1), &t.base)) {
         if (open_frames(&t))
             status = trace(&t, why);
         free_caustics(&t);

@@ -2,7 +2,7 @@
  * a fixed order, so that neither threads nor ranks show. */
 #define _POSIX_C_SOURCE 200809L
 #include "reference/caustics.h"
-#include "reference/chunks.h"
+#include "common/parallel.h"
 #include "reference/paths.h"
 #include "reference/spread.h"
 #include "reference/state.h"
@@ -90,17 +90,17 @@ static void report(void *user, double of_round) {
 
 /* One function over this rank's chunks; what all ranks found ends in r->round. False: cancelled. */
 static bool run_chunks(rendering *r, void (*run)(void *, uint32_t, uint64_t *), bool reports) {
-    const chunk_work w = {.run = run,
-                          .done = reports ? report : NULL,
-                          .user = r,
-                          .first = spread_rank(),
-                          .step = spread_size(),
-                          .count = r->chunks,
-                          .threads = chunks_threads(r->in->threads, spread_neighbours()),
-                          .cancel = r->in->cancel};
+    const parallel_work w = {.run = run,
+                             .done = reports ? report : NULL,
+                             .user = r,
+                             .first = spread_rank(),
+                             .step = spread_size(),
+                             .count = r->chunks,
+                             .threads = parallel_threads(r->in->threads, spread_neighbours()),
+                             .cancel = r->in->cancel};
     uint64_t rays = 0;
     memset(r->round, 0, r->state.pixels * sizeof *r->round);
-    const bool whole = chunks_run(&w, &rays);
+    const bool whole = parallel_run(&w, &rays);
     if (spread_any(!whole))
         return false;
     spread_gather((double *)r->round, (size_t)r->state.pixels * (sizeof *r->round / sizeof(double)));
@@ -152,7 +152,7 @@ static void free_caustics(rendering *r) {
 
 /* The round's photons, the same on all ranks, and a sequence's own each, so that variances hold theirs. */
 static vit_status trace_caustics(rendering *r, uint64_t *rays, vit_text *why) {
-    const unsigned threads = chunks_threads(r->in->threads, spread_neighbours());
+    const unsigned threads = parallel_threads(r->in->threads, spread_neighbours());
     free_caustics(r);
     for (uint32_t q = 0; q < REFERENCE_SEQUENCES && r->first_radius > 0.0f; q++) {
         const uint32_t number = pcg(r->in->frame ^ pcg(r->state.rounds * REFERENCE_SEQUENCES + q));
@@ -232,7 +232,7 @@ static vit_status make_room(rendering *r, vit_text *why) {
 }
 
 static vit_status render(rendering *r, reference *out, vit_text *why) {
-    const unsigned threads = chunks_threads(r->in->threads, spread_neighbours());
+    const unsigned threads = parallel_threads(r->in->threads, spread_neighbours());
     vit_status status = check(r->in, why);
     if (status == VIT_OK)
         status = make_room(r, why);

@@ -1,6 +1,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "reference/caustics.h"
-#include "reference/chunks.h"
+#include "common/parallel.h"
 #include "reference/metrics.h"
 #include "reference/paths.h"
 #include <stdio.h>
@@ -52,13 +52,13 @@ static void pixel_chunk(void *user, uint32_t chunk, uint64_t *rays) {
 
 reference_timing reference_timer_frame(reference_timer *t) {
     reference_timing r = {.rays = 0};
-    const chunk_work w = {
+    const parallel_work w = {
         .run = pixel_chunk, .user = t, .step = 1, .count = (t->width * t->height + CHUNK - 1) / CHUNK, .threads = t->threads};
     const double began = now_ms();
     caustics_free(&t->caustics);
     if (!caustics_trace(&t->scene, t->radius, pcg(t->number ^ SEED), 0, t->threads, &t->caustics, &r.rays))
         t->caustics = (caustics){.count = 0}; /* out of memory: a frame without them */
-    (void)chunks_run(&w, &r.rays);            /* cannot be cancelled */
+    (void)parallel_run(&w, &r.rays);          /* cannot be cancelled */
     r.ms = now_ms() - began;
     t->number++;
     const cost_error e = metrics_compare(t->total, t->image, NULL, t->grid_width, t->grid_height);
@@ -78,7 +78,7 @@ vit_status reference_timer_open(const reference_input *in, const reference *trut
                                .height = s->height,
                                .grid_width = truth->width,
                                .grid_height = truth->height,
-                               .threads = chunks_threads(in->threads, 1),
+                               .threads = parallel_threads(in->threads, 1),
                                .image = calloc(values, sizeof(float)),
                                .total = calloc(values, sizeof(double))};
     }
