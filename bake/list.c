@@ -1,4 +1,5 @@
 #include "list.h"
+#include "common/fail.h"
 #include "list_parts.h"
 #include "vitrine_pack.h"
 #include <inttypes.h>
@@ -171,8 +172,7 @@ vit_status list_print(const scene *s, bool strict, bool json, FILE *to, vit_text
     for (int i = 0; status == VIT_OK && i < s->mesh_count; i++)
         add_extensions(&l, s->meshes[i].file);
     if (status == VIT_OK && l.failed) {
-        (void)snprintf(why->text, sizeof why->text, "out of memory");
-        status = VIT_FAILED;
+        status = bake_fail(why, VIT_FAILED, "out of memory");
     }
     if (status == VIT_OK)
         json ? list_for_programs(&l, to) : list_for_people(&l, to);

@@ -1,4 +1,5 @@
 #include "options.h"
+#include "common/fail.h"
 #include "pack/effects.h"
 #include "scene/fields.h"
 #include "common/option_text.h"
@@ -10,11 +11,7 @@
 #include <string.h>
 
 static vit_status usage(vit_text *why, const char *option, const char *wants) {
-    snprintf(why->text, sizeof why->text, "%.100s: %.300s (try --help)", option, wants);
-    for (char *c = why->text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    return VIT_USAGE;
+    return bake_fail_plain(why, VIT_USAGE, "%.100s: %.300s (try --help)", option, wants);
 }
 
 static bool exposure_of(const char *text, options *o) {

@@ -1,8 +1,8 @@
 /* Pixels, reference, comparison; check_say.c has the words. */
 #include "check/check.h"
+#include "common/fail.h"
 #include "pack/opened.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,8 +47,7 @@ static void tracing(void *user, double fraction) {
 static vit_status trace(const pipeline *p, const pipeline_packed *packed, uint32_t most, check *c, vit_text *why) {
     bool *only = direct_only(p, packed->plan.scene.lights);
     if (!only) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     const spots_input in = {.sections = &packed->sections,
                             .direct_only = only,
@@ -230,8 +229,7 @@ vit_status check_share(const pipeline *p, const pipeline_packed *packed, const c
     check *few = malloc(sizeof *few);
     check_found found;
     if (!few) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     *few = *c;
     few->bounces = bounces;

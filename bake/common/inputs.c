@@ -1,4 +1,5 @@
 #include "common/inputs.h"
+#include "common/fail.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,20 +65,13 @@ bool inputs_hold(const inputs *in, const char *path) {
 vit_status inputs_check_output(const inputs *in, const char *option, const char *path, vit_text *why) {
     struct stat s;
     if (in->lost) {
-        (void)snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     const struct input_file *same = stat(path, &s) == 0 ? find(in, &s) : NULL;
     if (!same)
         return VIT_OK;
     if (strcmp(path, same->path) == 0)
-        (void)snprintf(why->text, sizeof why->text, "%s %.300s: is read, so it is not written to", option, path);
-    else
-        (void)snprintf(why->text, sizeof why->text,
-                       "%s %.200s: is the same file as %.200s, which is read, so it is not written to", option, path,
-                       same->path);
-    for (char *c = why->text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    return VIT_USAGE;
+        return bake_fail_plain(why, VIT_USAGE, "%s %.300s: is read, so it is not written to", option, path);
+    return bake_fail_plain(why, VIT_USAGE, "%s %.200s: is the same file as %.200s, which is read, so it is not written to",
+                           option, path, same->path);
 }

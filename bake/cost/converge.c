@@ -1,5 +1,6 @@
 /* steps, partners -> sweep.c -> pictures, reference -> errors and their parts -> lines. */
 #include "cost/converge.h"
+#include "common/fail.h"
 #include "cost/knobs.h"
 #include <math.h>
 #include <stddef.h>
@@ -9,8 +10,7 @@
 #define PARTNER 1.6 /* times its step's paths */
 
 static vit_status fail(vit_status status, vit_text *why, const char *cause) {
-    (void)snprintf(why->text, sizeof why->text, "%s", cause);
-    return status;
+    return bake_fail(why, status, "%s", cause);
 }
 
 /* Which step the scene's own setting is: the middle one, or a later one if there would be too many paths in the end. */

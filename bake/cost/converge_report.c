@@ -1,5 +1,6 @@
 /* converge.csv, converge.svg, and the table. */
 #include "cost/converge.h"
+#include "common/fail.h"
 #include "report/report_parts.h"
 #include <math.h>
 #include <stddef.h>
@@ -105,8 +106,7 @@ static vit_status print_svg(const void *results, FILE *to, vit_text *why) {
     if (f)
         print_script(results, f);
     if (!f || fclose(f) != 0 || !script) {
-        (void)snprintf(why->text, sizeof why->text, "converge.svg: out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "converge.svg: out of memory");
     }
     const vit_status status = report_gnuplot(&drawing, script, to, why);
     free(script);

@@ -1,5 +1,6 @@
 /* One table holds the options: parser and --help are made from it. Adding an option is adding a row. */
 #include "cost/cost_options.h"
+#include "common/fail.h"
 #include "cost/converge.h"
 #include "cost/knobs.h"
 #include "common/option_text.h"
@@ -57,11 +58,7 @@ static const option options[] = {
 enum { OPTIONS = sizeof options / sizeof options[0] };
 
 static vit_status usage(vit_text *why, const char *name, const char *wants) {
-    (void)snprintf(why->text, sizeof why->text, "%.100s: %s (try --help)", name, wants);
-    for (char *c = why->text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    return VIT_USAGE;
+    return bake_fail_plain(why, VIT_USAGE, "%.100s: %s (try --help)", name, wants);
 }
 
 static bool read_number(const char *text, bool whole, const option *row, double *out) {

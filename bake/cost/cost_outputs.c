@@ -1,4 +1,5 @@
 #include "cost/cost_outputs.h"
+#include "common/fail.h"
 #include "cost/converge.h"
 #include "cost/knobs.h"
 #include "report/report.h"
@@ -13,8 +14,7 @@ static const char *file_of(const cost_options *o, uint32_t index) {
 vit_status cost_outputs_check(const cost_options *o, const scene *s, vit_text *why) {
     vit_status status = knobs_check(o->knobs, why);
     if (status == VIT_OK && o->frame >= s->frames) {
-        (void)snprintf(why->text, sizeof why->text, "--frame: the path has frames 0 to %d", s->frames - 1);
-        status = VIT_USAGE;
+        status = bake_fail(why, VIT_USAGE, "--frame: the path has frames 0 to %d", s->frames - 1);
     }
     if (status == VIT_OK && o->write)
         status = rewrite_check(o->write, why);

@@ -1,8 +1,8 @@
 #include "cost/effect_cost.h"
+#include "common/fail.h"
 #include "pack/effects.h"
 #include "cost/fit.h"
 #include "pack/opened.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,8 +44,7 @@ vit_status effect_cost_without(const pack_sections *whole, uint64_t effects, voi
     sections.data[VIT_SECTION_META] = &s;
     vit_light *lights = lights_with_paths(whole, all, s.paths > 0);
     if (!lights) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     sections.data[VIT_SECTION_LITE] = lights;
     vit_status status = vit_pack_derive(&s, why);

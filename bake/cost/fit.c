@@ -1,4 +1,5 @@
 #include "cost/fit.h"
+#include "common/fail.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -60,23 +61,22 @@ static bool better(const cost_setting *s, const cost_setting *than, const fit_bu
 
 static vit_status refuse(const cost_results *r, const fit_budget *b, uint32_t closest, vit_text *why) {
     if (closest == r->count)
-        snprintf(why->text, sizeof why->text, "no setting is left to choose from");
-    else if (b->work > 0)
-        snprintf(why->text, sizeof why->text,
-                 "no setting fits %" PRIu64 " work units a frame: the closest, '%s', takes %" PRIu64 ", %" PRIu64 " too many",
-                 b->work, r->settings[closest].name, r->settings[closest].work, r->settings[closest].work - b->work);
-    else
-        snprintf(why->text, sizeof why->text,
-                 "no setting fits %g ms: the closest, '%s', takes %.2f ms (95th percentile), %.2f ms too long", b->ms,
-                 r->settings[closest].name, r->settings[closest].ms_p95, r->settings[closest].ms_p95 - b->ms);
-    return VIT_BUDGET;
+        return bake_fail(why, VIT_BUDGET, "no setting is left to choose from");
+    const cost_setting *c = &r->settings[closest];
+    if (b->work > 0)
+        return bake_fail(why, VIT_BUDGET,
+                         "no setting fits %" PRIu64 " work units a frame: the closest, '%s', takes %" PRIu64 ", %" PRIu64
+                         " too many",
+                         b->work, c->name, c->work, c->work - b->work);
+    return bake_fail(why, VIT_BUDGET,
+                     "no setting fits %g ms: the closest, '%s', takes %.2f ms (95th percentile), %.2f ms too long", b->ms,
+                     c->name, c->ms_p95, c->ms_p95 - b->ms);
 }
 
 vit_status fit_choose(const cost_results *r, const fit_budget *b, uint32_t *chosen, vit_text *why) {
     uint32_t best = r->count, closest = r->count;
     if (b->work > 0 && r->work_count == 0) {
-        snprintf(why->text, sizeof why->text, "this build counts no work: only a budget in milliseconds can be fitted");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "this build counts no work: only a budget in milliseconds can be fitted");
     }
     for (uint32_t i = 0; i < r->count; i++) {
         const cost_setting *s = &r->settings[i];

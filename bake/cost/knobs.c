@@ -1,5 +1,6 @@
 /* What can be turned, and what it can be set to for the scene at hand. */
 #include "cost/knob_parts.h"
+#include "common/fail.h"
 #include "pack/planner.h"
 #include "scene/setting_rows.h"
 #include <math.h>
@@ -153,8 +154,7 @@ static vit_status try_value(const knobs_input *in, const knob_setting *base, int
         fine = other && put_word(other, word + length + 1, &s, text, sizeof text, &used);
     }
     if (!fine) {
-        (void)snprintf(why->text, sizeof why->text, "values to try of '%s': '%.60s'", knob_name(k), word);
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "values to try of '%s': '%.60s'", knob_name(k), word);
     }
     add_value(base, &s, label, text, t);
     return VIT_OK;

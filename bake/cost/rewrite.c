@@ -1,4 +1,5 @@
 #include "cost/rewrite.h"
+#include "common/fail.h"
 #include "pack/pack_write.h"
 #include "scene/scene.h"
 #include <ctype.h>
@@ -142,8 +143,7 @@ static vit_status check(const char *path, const char *settings, vit_text *why) {
     scene_quality_text(&q, want, sizeof want);
     scene_free(&s);
     if (status == VIT_OK && strcmp(got, want) != 0) {
-        snprintf(why->text, sizeof why->text, "%.300s: its quality block could not be found", path);
-        status = VIT_BAD_INPUT;
+        status = bake_fail(why, VIT_BAD_INPUT, "%.300s: its quality block could not be found", path);
     }
     return status;
 }
@@ -163,8 +163,7 @@ vit_status rewrite_file(const char *path, const char *settings, vit_text *why) {
     if (status == VIT_OK) {
         status = check(aside, settings, why);
         if (status == VIT_OK && rename(aside, path) != 0) {
-            snprintf(why->text, sizeof why->text, "%.300s: %s", path, strerror(errno));
-            status = VIT_FAILED;
+            status = bake_fail(why, VIT_FAILED, "%.300s: %s", path, strerror(errno));
         }
         if (status != VIT_OK)
             (void)unlink(aside);
@@ -182,6 +181,5 @@ vit_status rewrite_check(const char *path, vit_text *why) {
     scene_free(&s);
     if (access(path, W_OK) == 0)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "%.300s: %s", path, strerror(errno));
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "%.300s: %s", path, strerror(errno));
 }

@@ -1,5 +1,6 @@
 /* default pack -> reference -> settings -> pictures, work -> errors, a better reference if need be -> times -> front. */
 #include "cost/sweep_parts.h"
+#include "common/fail.h"
 #include "cost/pareto.h"
 #include "cost/machine.h"
 #include "reference/spread.h"
@@ -24,8 +25,7 @@ bool sweep_cancelled(const sweep *s, vit_text *why) {
 }
 
 static vit_status fail(vit_status status, vit_text *why, const char *cause) {
-    snprintf(why->text, sizeof why->text, "%s", cause);
-    return status;
+    return bake_fail(why, status, "%s", cause);
 }
 
 /* Evenly spread over the path, ascending; the one nearest to the compared frame gives way to it. */
@@ -34,8 +34,7 @@ static vit_status choose_frames(sweep *s, vit_text *why) {
                    count = all < most ? all : most;
     const int64_t want = s->in->frame < 0 ? all / 2 : s->in->frame;
     if (want >= all) {
-        snprintf(why->text, sizeof why->text, "--frame: the path has frames 0 to %u", all - 1);
-        return VIT_USAGE;
+        return bake_fail(why, VIT_USAGE, "--frame: the path has frames 0 to %u", all - 1);
     }
     for (uint32_t i = 0; i < count; i++) {
         s->frames[i] = count > 1 ? (uint32_t)((uint64_t)i * (all - 1) / (count - 1)) : 0;

@@ -1,7 +1,7 @@
 /* Direct light of the compared frame. Settings that differ in indirect light alone share it, and few kernels need to be
  * compiled for it. */
 #include "cost/sweep_parts.h"
-#include <stdio.h>
+#include "common/fail.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,8 +53,7 @@ vit_status sweep_direct(sweep *s, uint32_t i, const float **image, vit_text *why
     sweep_direct_image *d = &s->directs[s->direct_count];
     *d = (sweep_direct_image){.key = key, .image = calloc(3 * s->points, sizeof *d->image)};
     if (!d->image) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     s->direct_count++; /* freed with the others from now on */
     *image = d->image;

@@ -1,5 +1,6 @@
 /* Packs, pictures and exact work of the settings. */
 #include "cost/fit.h"
+#include "common/fail.h"
 #include "cost/sweep_parts.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,8 +9,7 @@
 static vit_status fail(vit_status status, vit_text *why, const char *name, const char *cause) {
     char text[sizeof why->text];
     (void)snprintf(text, sizeof text, "%s", cause);
-    (void)snprintf(why->text, sizeof why->text, "setting '%.*s': %.*s", COST_NAME, name, (int)sizeof text - 130, text);
-    return status;
+    return bake_fail(why, status, "setting '%.*s': %.*s", COST_NAME, name, (int)sizeof text - 130, text);
 }
 
 static int scaled(int edge, double scale) {

@@ -1,5 +1,6 @@
 /* Times of all settings: in turns, as many open at once as the memory allows, the default in every batch. */
 #include "cost/sweep_parts.h"
+#include "common/fail.h"
 #include "cost/timing.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,8 +46,7 @@ static vit_status batch_fill(sweep *s, batch *b, vit_text *why) {
     b->ms = calloc(most * repeats, sizeof *b->ms);
     b->pass_ms = calloc(most * repeats * VIT_MAX_PASSES, sizeof *b->pass_ms);
     if (!b->entries || !b->ms || !b->pass_ms) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     for (uint32_t k = 0; k < b->count; k++) {
         const uint32_t i = b->setting[k];

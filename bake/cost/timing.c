@@ -1,4 +1,5 @@
 #include "cost/timing.h"
+#include "common/fail.h"
 #include "pack/opened.h"
 #include <math.h>
 #include <stdio.h>
@@ -49,9 +50,8 @@ static vit_status open_entry(const timing_input *in, timing_entry *e, opened *o,
     for (uint32_t f = 0; status == VIT_OK && f < o->need.frames; f++) {
         status = opened_frame(o, f, why);
         if (status == VIT_OK && vit_hash_frame(o->frame, info.format, o->need.frame_bytes) != vit_golden(o->v, f)) {
-            snprintf(why->text, sizeof why->text, "setting '%s': frame %u of its pack has another hash than its golden one",
-                     e->name, f);
-            status = VIT_MISMATCH;
+            status = bake_fail(why, VIT_MISMATCH, "setting '%s': frame %u of its pack has another hash than its golden one",
+                               e->name, f);
         }
         if (status == VIT_OK && cancelled(in, why))
             status = VIT_FAILED;
@@ -88,8 +88,7 @@ vit_status timing_measure(const timing_input *in, vit_text *why) {
     opened *opens = calloc(in->count, sizeof *opens);
     vit_status status = VIT_OK;
     if (!opens) {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     for (uint32_t i = 0; i < in->count && status == VIT_OK; i++) {
         status = open_entry(in, &in->entries[i], &opens[i], why);

@@ -16,9 +16,9 @@
  * Every light that shines at all gives the same power, area lights together and the sky as one each; all together 1, and
  * irradiance is in that unit a m2. */
 #include "common/parallel.h"
+#include "common/fail.h"
 #include "dark_sides/parts.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -321,8 +321,7 @@ vit_status dark_sides_find(const dark_sides_input *in, geometry *g, dark_sides *
     }
     if (!fine || !allocate(&s) || !ray_scene_open(m, g, in->threads, &s.rays) ||
         !run_steps(&s, in->threads, in->progress, in->user)) {
-        snprintf(why->text, sizeof why->text, "dark sides: out of memory, or Embree fails");
-        status = VIT_FAILED;
+        status = bake_fail(why, VIT_FAILED, "dark sides: out of memory, or Embree fails");
     } else {
         out->free_path = mean_free_path(&s);
         flag_dark_sides(&s, out);

@@ -1,9 +1,9 @@
 /* All textures with their mip levels in one sheet of words. Each level is filtered straight from the image: any size of image
  * is weighted by exact area, nothing but the sheet is held in memory, and errors do not add up from level to level. */
 #include "geometry/atlas.h"
+#include "common/fail.h"
 #include "common/strict_math.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,9 +144,8 @@ static vit_status place_mips(atlas *out, vit_text *why) {
     free(nodes);
     free(rects);
     if (!out->width) {
-        snprintf(why->text, sizeof why->text, "textures: %u with %llu texels do not fit one sheet of %u texels",
-                 out->texture_count, (unsigned long long)area, TEXELS_LIMIT);
-        return VIT_BAD_INPUT;
+        return bake_fail(why, VIT_BAD_INPUT, "textures: %u with %llu texels do not fit one sheet of %u texels",
+                         out->texture_count, (unsigned long long)area, TEXELS_LIMIT);
     }
     out->texel_count = out->width * out->height;
     out->occupancy = (double)area / out->texel_count;
@@ -249,8 +248,7 @@ static void write_texture(const packing *p, const texture_key *key, const vit_te
 }
 
 static vit_status out_of_memory(vit_text *why) {
-    snprintf(why->text, sizeof why->text, "textures: out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "textures: out of memory");
 }
 
 static vit_status pack_textures(packing *p, atlas *out, vit_text *why) {

@@ -2,6 +2,7 @@
  * Embree's own boxes are not used: the runtime's nearest hit is a function of ray and triangles alone only if each box holds
  * the whole grown boxes of its triangles, to the bit. For the same reason there are no spatial splits. */
 #include "geometry/bvh.h"
+#include "common/fail.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -236,8 +237,7 @@ static void flatten_single_leaf(layout *l, const build_node *leaf) {
 }
 
 static vit_status out_of_memory(vit_text *why) {
-    snprintf(why->text, sizeof why->text, "BVH: out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "BVH: out of memory");
 }
 
 static vit_status lay_out(const build_node *root, const box *boxes, uint32_t triangles, bvh *out, vit_text *why) {
@@ -280,8 +280,7 @@ static vit_status lay_out_tree(const box *boxes, uint32_t triangles, unsigned th
         snprintf(config, sizeof config, "threads=%u", threads);
     RTCDevice device = rtcNewDevice(config);
     if (!device) {
-        snprintf(why->text, sizeof why->text, "BVH: Embree makes no device (error %d)", (int)rtcGetDeviceError(NULL));
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "BVH: Embree makes no device (error %d)", (int)rtcGetDeviceError(NULL));
     }
     RTCBVH tree = rtcNewBVH(device);
     const build_node *root = tree ? embree_tree(tree, boxes, triangles) : NULL;
@@ -307,9 +306,8 @@ vit_status bvh_build(const model *m, unsigned threads, bvh *out, vit_text *why) 
     *out = (bvh){0};
     const float largest = largest_coordinate(m);
     if (m->triangles < 1 || m->triangles > VIT_MAX_TRIANGLES || !(largest <= COORDINATE_LIMIT)) {
-        snprintf(why->text, sizeof why->text, "model: %u triangles, largest coordinate %g m; needs 1..%u and at most %g m",
-                 m->triangles, (double)largest, VIT_MAX_TRIANGLES, (double)COORDINATE_LIMIT);
-        return VIT_BAD_INPUT;
+        return bake_fail(why, VIT_BAD_INPUT, "model: %u triangles, largest coordinate %g m; needs 1..%u and at most %g m",
+                         m->triangles, (double)largest, VIT_MAX_TRIANGLES, (double)COORDINATE_LIMIT);
     }
     out->box_pad = fmaxf(largest * 0x1p-20f, 0x1p-100f);
     box *boxes = malloc(m->triangles * sizeof *boxes);

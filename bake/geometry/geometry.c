@@ -1,10 +1,10 @@
 /* Triangles and attributes in the BVH's leaf order, as records.clh lays them out. Plain arithmetic throughout
  * (-ffp-contract=off): the bytes do not depend on compiler or machine. */
 #include "geometry/bvh.h"
+#include "common/fail.h"
 #include "common/octahedral.h"
 #include "common/triangle.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,8 +74,7 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
     if (!out->triangles || !out->attributes || !normals) {
         geometry_free(out);
         free(normals);
-        snprintf(why->text, sizeof why->text, "geometry: out of memory for %u triangles", m->triangles);
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "geometry: out of memory for %u triangles", m->triangles);
     }
     for (uint32_t i = 0; i < m->vertices; i++)
         normals[i] = normal_word(m->normal + 3 * (size_t)i);

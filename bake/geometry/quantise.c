@@ -1,8 +1,8 @@
 #include "geometry/quantise.h"
+#include "common/fail.h"
 #include "common/triangle.h"
 #include "common/octahedral.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,8 +60,7 @@ vit_status model_quantise(const model *m, int vertex_bits, int normal_bits, mode
     out->materials = copy(m->materials, (size_t)m->material_count, sizeof *m->materials);
     if (!out->position || !out->normal || !out->index || !out->material || !out->materials) {
         model_quantise_free(out);
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     if (vertex_bits == 16) {
         snap_positions(out);
@@ -72,8 +71,7 @@ vit_status model_quantise(const model *m, int vertex_bits, int normal_bits, mode
     if (out->triangles > 0)
         return VIT_OK;
     model_quantise_free(out);
-    snprintf(why->text, sizeof why->text, "quality.vertex_bits: with 16 bits no triangle has an area");
-    return VIT_BAD_INPUT;
+    return bake_fail(why, VIT_BAD_INPUT, "quality.vertex_bits: with 16 bits no triangle has an area");
 }
 
 void model_quantise_free(model *m) {

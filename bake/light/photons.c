@@ -1,6 +1,7 @@
 /* The method of kernels/photons.cl, step for step and operation for operation; hits are the kernels', too, of triangles
  * that Embree proposes (triangle_rays.c). Power: see vit_photon. */
 #include "light/photons.h"
+#include "common/fail.h"
 #include "common/parallel.h"
 #include "light/light_model.h"
 #include "light/photon_emission.h"
@@ -158,17 +159,15 @@ static vit_status count_paths(const photons_input *in, uint64_t *paths, vit_text
     *paths = 0;
     for (uint32_t i = 0; i < in->light_count; i++) {
         if (in->lights[i].paths > PHOTONS_MAX_PATHS) {
-            snprintf(why->text, sizeof why->text, "photons: a light has at most %u paths, still light %u has %u",
-                     PHOTONS_MAX_PATHS, i, in->lights[i].paths);
-            return VIT_BAD_INPUT;
+            return bake_fail(why, VIT_BAD_INPUT, "photons: a light has at most %u paths, still light %u has %u",
+                             PHOTONS_MAX_PATHS, i, in->lights[i].paths);
         }
         *paths += in->lights[i].paths;
     }
     if (*paths + in->first_path <= UINT32_MAX && *paths * (in->bounces - 1) <= UINT32_MAX)
         return VIT_OK;
-    snprintf(why->text, sizeof why->text, "photons: %llu paths of %u bounces are too many", (unsigned long long)*paths,
-             in->bounces);
-    return VIT_BAD_INPUT;
+    return bake_fail(why, VIT_BAD_INPUT, "photons: %llu paths of %u bounces are too many", (unsigned long long)*paths,
+                     in->bounces);
 }
 
 vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **out, uint32_t *count, vit_text *why) {

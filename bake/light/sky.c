@@ -4,6 +4,7 @@
  * hierarchical warping: P. Clarberg et al., Wavelet importance sampling, 2005. */
 #include "light/sky.h"
 #include "common/pi.h"
+#include "common/fail.h"
 #include "common/file_trouble.h"
 #include "import/image_file.h"
 #include "import/radiance.h"
@@ -221,8 +222,7 @@ vit_status sky_from_texels(const float *rgb, int width, int height, double rotat
     if (fine)
         return VIT_OK;
     sky_free(out);
-    snprintf(why->text, sizeof why->text, "sky: out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "sky: out of memory");
 }
 
 /* ---- files ---- */

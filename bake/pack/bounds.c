@@ -1,6 +1,6 @@
 #include "pack/bounds.h"
+#include "common/fail.h"
 #include "pack/opened.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,8 +22,7 @@ static void run_end(run *r) {
 }
 
 static vit_status out_of_memory(vit_text *why) {
-    snprintf(why->text, sizeof why->text, "out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "out of memory");
 }
 
 static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool dark_sides,
@@ -143,12 +142,11 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
             break;
         if (t.nodes > s->max_nodes || t.list > s->max_list) {
             if ((t.nodes > s->max_nodes && s->max_nodes == MOST_NODES) || (t.list > s->max_list && s->max_list == MOST_LIST)) {
-                snprintf(why->text, sizeof why->text,
-                         "frame %u needs %u hierarchy nodes and %u list entries, "
-                         "at most %u and %u are possible: lower quality.radius or "
-                         "quality.photons",
-                         *next, t.nodes, t.list, MOST_NODES, MOST_LIST);
-                status = VIT_BAD_INPUT;
+                status = bake_fail(why, VIT_BAD_INPUT,
+                                   "frame %u needs %u hierarchy nodes and %u list entries, "
+                                   "at most %u and %u are possible: lower quality.radius or "
+                                   "quality.photons",
+                                   *next, t.nodes, t.list, MOST_NODES, MOST_LIST);
                 break;
             }
             s->max_nodes = t.nodes > s->max_nodes ? doubled(t.nodes, MOST_NODES) : s->max_nodes;

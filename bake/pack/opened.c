@@ -1,5 +1,5 @@
 #include "pack/opened.h"
-#include <stdio.h>
+#include "common/fail.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,8 +22,7 @@ vit_status opened_begin(const vit_open_info *how, opened *out, vit_text *why) {
     if (out->arena && out->frame)
         status = vit_open(&info, &out->v, why);
     else {
-        snprintf(why->text, sizeof why->text, "out of memory");
-        status = VIT_FAILED;
+        status = bake_fail(why, VIT_FAILED, "out of memory");
     }
     if (status != VIT_OK)
         opened_end(out);

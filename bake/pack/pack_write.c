@@ -1,13 +1,13 @@
 /* pack_write.c: lays the sections out as one file image, and puts that image under its name whole or not at all. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "pack/pack_write.h"
+#include "common/fail.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,17 +16,6 @@
 #include <unistd.h>
 
 _Static_assert(!VIT_BIG_ENDIAN, "records are written as memory has them: bake on a little-endian machine");
-
-static vit_status fail(vit_status status, vit_text *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
-static vit_status fail(vit_status status, vit_text *why, const char *format, ...) {
-    if (why) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(why->text, sizeof why->text, format, arguments);
-        va_end(arguments);
-    }
-    return status;
-}
 
 /* Fills codes, record sizes, offsets and sizes; `total` is the file's size. */
 static vit_status lay_out(const vit_scene *s, vit_pack_entry table[VIT_SECTION_COUNT], uint64_t *total, vit_text *why) {
@@ -43,8 +32,8 @@ static vit_status lay_out(const vit_scene *s, vit_pack_entry table[VIT_SECTION_C
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
         const uint64_t offset = (end + VIT_PACK_ALIGN - 1) / VIT_PACK_ALIGN * VIT_PACK_ALIGN; /* end < 2^63: see below */
         if (sections[i].records > (SIZE_MAX / 2 - offset) / sections[i].record)
-            return fail(VIT_BAD_INPUT, why, "pack: section %s: %llu records are too many", sections[i].code,
-                        (unsigned long long)sections[i].records);
+            return bake_fail(why, VIT_BAD_INPUT, "pack: section %s: %llu records are too many", sections[i].code,
+                             (unsigned long long)sections[i].records);
         table[i] =
             (vit_pack_entry){.record = sections[i].record, .offset = offset, .size = sections[i].records * sections[i].record};
         memcpy(table[i].code, sections[i].code, sizeof table[i].code);
@@ -58,7 +47,7 @@ vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vi
     *bytes = NULL;
     *size = 0;
     if (!in->data[VIT_SECTION_META])
-        return fail(VIT_BAD_INPUT, why, "pack: section META: missing");
+        return bake_fail(why, VIT_BAD_INPUT, "pack: section META: missing");
     vit_pack_entry table[VIT_SECTION_COUNT];
     uint64_t total = 0;
     vit_status status = lay_out(in->data[VIT_SECTION_META], table, &total, why);
@@ -70,11 +59,11 @@ vit_status pack_assemble(const pack_sections *in, void **bytes, size_t *size, vi
     if (image)
         memset(image, 0, room);
     else
-        return fail(VIT_FAILED, why, "pack: out of memory for %llu bytes", (unsigned long long)total);
+        return bake_fail(why, VIT_FAILED, "pack: out of memory for %llu bytes", (unsigned long long)total);
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
         if (table[i].size > 0 && !in->data[i]) {
             free(image);
-            return fail(VIT_BAD_INPUT, why, "pack: section %.4s: missing", table[i].code);
+            return bake_fail(why, VIT_BAD_INPUT, "pack: section %.4s: missing", table[i].code);
         }
         if (table[i].size > 0)
             memcpy(image + table[i].offset, in->data[i], (size_t)table[i].size);
@@ -212,8 +201,8 @@ static bool sync_folder(const char *path) {
 /* The cause must not fall off the end of the line, so a long path loses its beginning. */
 static vit_status fail_file(vit_text *why, const char *path, const char *step, int error) {
     const size_t length = strlen(path), most = sizeof why->text / 2;
-    return fail(VIT_FAILED, why, "%s%s: %s%s%s", length > most ? "..." : "", length > most ? path + length - most : path, step,
-                error ? ": " : "", error ? strerror(error) : "");
+    return bake_fail(why, VIT_FAILED, "%s%s: %s%s%s", length > most ? "..." : "", length > most ? path + length - most : path,
+                     step, error ? ": " : "", error ? strerror(error) : "");
 }
 
 /* Returns the step that failed, with errno, or NULL. Closes `file` in any case, and last of all, since its lock goes with it.

@@ -1,8 +1,8 @@
 /* The stages of a bake in their order, once for the scene and once for each pack of it. A photon's disc depends on the radius
  * and its zone on the cell where it lands, and radius "auto" and zones on photons: these go round again after either. */
 #include "common/file_trouble.h"
+#include "common/fail.h"
 #include "pack/stages.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,8 +20,7 @@ static const struct {
 };
 
 vit_status out_of_memory(vit_text *why) {
-    snprintf(why->text, sizeof why->text, "out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "out of memory");
 }
 
 void stages_step(void *user, double fraction) {
@@ -29,11 +28,7 @@ void stages_step(void *user, double fraction) {
 }
 
 static vit_status file_fails(const scene *s, int line, const char *what, const char *file, const char *trouble, vit_text *why) {
-    snprintf(why->text, sizeof why->text, "%.200s:%d: %s '%.200s' %s", s->path, line, what, file, trouble);
-    for (char *c = why->text; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    return VIT_BAD_INPUT;
+    return bake_fail_plain(why, VIT_BAD_INPUT, "%.200s:%d: %s '%.200s' %s", s->path, line, what, file, trouble);
 }
 
 /* What a scene file names can be opened: known before the first of it is imported. A missing texture is a matter of --strict.

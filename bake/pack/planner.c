@@ -1,9 +1,9 @@
 #include "pack/planner.h"
 #include "common/pi.h"
+#include "common/fail.h"
 #include "pack/copies.h"
 #include "common/strict_math.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -77,9 +77,8 @@ static vit_status share_paths(const plan_input *in, const double *worth, plan *p
     }
     p->scene.paths = first;
     if (first > 1000000) {
-        snprintf(why->text, sizeof why->text, "quality.photons: at most 1000000 paths in all, with %u lights got %u",
-                 t->light_count, first);
-        return VIT_BAD_INPUT;
+        return bake_fail(why, VIT_BAD_INPUT, "quality.photons: at most 1000000 paths in all, with %u lights got %u",
+                         t->light_count, first);
     }
     return VIT_OK;
 }
@@ -215,8 +214,7 @@ vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
     out->baked_paths = calloc(t->light_count + 1u, sizeof *out->baked_paths);
     if (!out->materials || !out->baked_paths) {
         plan_free(out);
-        snprintf(why->text, sizeof why->text, "out of memory");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
     plan_materials(m, a, out); /* 1. constants */
     c->width = (uint32_t)s->width;

@@ -1,4 +1,5 @@
 #include "reference/pixel_probes.h"
+#include "common/fail.h"
 #include "reference/caustics.h"
 #include "common/parallel.h"
 #include <math.h>
@@ -154,8 +155,7 @@ static vit_status trace(tracing *t, vit_text *why) {
     for (uint32_t next = most < 4 ? most : 4;; next = 2 * next < most ? 2 * next : most) {
         for (; t->rounds < next; t->rounds++) {
             if (!trace_caustics(t)) {
-                snprintf(why->text, sizeof why->text, "check: out of memory");
-                return VIT_FAILED;
+                return bake_fail(why, VIT_FAILED, "check: out of memory");
             }
             run_chunks(t, path_chunk);
             if (t->in->progress)

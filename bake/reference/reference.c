@@ -2,11 +2,11 @@
  * a fixed order, so that neither threads nor ranks show. */
 #define _POSIX_C_SOURCE 200809L
 #include "reference/caustics.h"
+#include "common/fail.h"
 #include "common/parallel.h"
 #include "reference/paths.h"
 #include "reference/spread.h"
 #include "reference/state.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -36,8 +36,7 @@ static double now(void) {
 }
 
 static vit_status fail(vit_text *why, vit_status status, const char *what) {
-    snprintf(why->text, sizeof why->text, "reference: %s", what);
-    return status;
+    return bake_fail(why, status, "reference: %s", what);
 }
 
 static uint32_t pixel_x(const rendering *r, uint32_t pixel) {

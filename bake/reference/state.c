@@ -1,12 +1,11 @@
 #include "reference/state.h"
+#include "common/fail.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 static vit_status no_memory(vit_text *why) {
-    snprintf(why->text, sizeof why->text, "reference: out of memory");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "reference: out of memory");
 }
 
 vit_status state_make(uint32_t width, uint32_t height, reference_state *out, vit_text *why) {

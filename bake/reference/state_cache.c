@@ -1,5 +1,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "reference/state.h"
+#include "common/fail.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -109,8 +110,7 @@ vit_status state_folder(const char *folder, vit_text *why) {
         if (access(path, W_OK | X_OK) == 0)
             return VIT_OK;
     }
-    snprintf(why->text, sizeof why->text, "%.400s: cannot keep references in this folder: %s", folder, strerror(errno));
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "%.400s: cannot keep references in this folder: %s", folder, strerror(errno));
 }
 
 static bool file_name(const reference_state *s, const char *folder, char path[ROOM]) {

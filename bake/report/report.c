@@ -1,5 +1,6 @@
 /* report.c: makes the folder; each file is made in memory and put under its name whole. */
 #include "report/report.h"
+#include "common/fail.h"
 #include "pack/pack_write.h"
 #include "report/report_parts.h"
 
@@ -10,8 +11,7 @@
 #include <sys/stat.h>
 
 static vit_status fail_folder(vit_text *why, const char *folder, int error) {
-    (void)snprintf(why->text, sizeof why->text, "%.300s: cannot make this folder: %s", folder, strerror(error));
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "%.300s: cannot make this folder: %s", folder, strerror(error));
 }
 
 vit_status report_folder(const char *folder, vit_text *why) {
@@ -61,8 +61,7 @@ vit_status report_file(const void *results, const char *folder, const char *name
     vit_status status = to ? part(results, to, why) : VIT_FAILED;
     const bool whole = to && !ferror(to);
     if ((to && fclose(to) != 0) || !whole) {
-        (void)snprintf(why->text, sizeof why->text, "%s: out of memory", name);
-        status = VIT_FAILED;
+        status = bake_fail(why, VIT_FAILED, "%s: out of memory", name);
     }
     if (status == VIT_OK)
         status = pack_save(path, bytes, size, why);

@@ -1,5 +1,6 @@
 /* report_page.c: index.html, from top to bottom. Nothing in it is loaded from anywhere: a content policy says so as well. */
 #include "report/report_parts.h"
+#include "common/fail.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -85,8 +86,7 @@ static vit_status print_error_plots(const cost_results *r, FILE *to, vit_text *w
     vit_status status = VIT_OK;
     for (report_measure by = REPORT_NMSE; by <= REPORT_RELMSE && status == VIT_OK; by++) {
         if (!print_series(r, by, to)) {
-            (void)snprintf(why->text, sizeof why->text, "report: out of memory");
-            return VIT_FAILED;
+            return bake_fail(why, VIT_FAILED, "report: out of memory");
         }
         status = report_plot_error(r, by, to, why);
         (void)fprintf(to, "<figcaption>%s</figcaption></figure>\n",
@@ -209,8 +209,7 @@ vit_status report_page(const cost_results *r, FILE *to, vit_text *why) {
         return status;
     (void)fputs("<section id=\"look\"><h2>Look at it</h2>\n", to);
     if (!report_look(r, to)) {
-        (void)snprintf(why->text, sizeof why->text, "report: out of memory for a picture");
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "report: out of memory for a picture");
     }
     (void)fputs("</section>\n", to);
     print_details(r, to);

@@ -1,5 +1,6 @@
 /* report_plots.c: error against time, alone and beside a path tracer. */
 #include "report/report_parts.h"
+#include "common/fail.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -218,8 +219,7 @@ static vit_status draw(const plot *p, char *script, FILE *to, vit_text *why) {
 }
 
 static vit_status out_of_memory(vit_text *why) {
-    (void)snprintf(why->text, sizeof why->text, "report: out of memory for a plot");
-    return VIT_FAILED;
+    return bake_fail(why, VIT_FAILED, "report: out of memory for a plot");
 }
 
 static void say_nothing_drawn(const plot *p, FILE *to) {

@@ -1,4 +1,5 @@
 #include "scene/scene_files.h"
+#include "common/fail.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_text.h"
 #include "scene/setting_rows.h"
@@ -221,8 +222,7 @@ static vit_status copy_path(scene *s, const char *path, vit_text *why) {
         memcpy(s->path, path, strlen(path) + 1);
         return VIT_OK;
     }
-    (void)snprintf(why->text, sizeof why->text, "%.100s...: the path is longer than %d bytes", path, SCENE_PATH - 1);
-    return VIT_BAD_INPUT;
+    return bake_fail(why, VIT_BAD_INPUT, "%.100s...: the path is longer than %d bytes", path, SCENE_PATH - 1);
 }
 
 /* What the mesh files in turn refer to is known when they are read. */
@@ -266,8 +266,7 @@ vit_status scene_for_mesh(const char *path, scene *out, vit_text *why) {
         return VIT_BAD_INPUT;
     out->meshes = calloc(1, sizeof *out->meshes);
     if (!out->meshes) {
-        (void)snprintf(why->text, sizeof why->text, "%.300s: out of memory", path);
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "%.300s: out of memory", path);
     }
     const char *slash = strrchr(path, '/');
     (void)snprintf(out->name, sizeof out->name, "%.*s", SCENE_NAME - 1, slash ? slash + 1 : path);
