@@ -259,6 +259,26 @@ static vit_status upload_baked_photons(vit_opencl *d, vit_text *why) {
     return e == CL_SUCCESS ? VIT_OK : failed(why, "clEnqueueWriteBuffer", e);
 }
 
+/* What an argument of a pass is in all frames; those that vary are set later. */
+static uint32_t fixed_value(uint32_t argument, uint32_t pass, const vit_launch *l) {
+    switch (argument) {
+    case V_run:
+        return l->run;
+    case V_layers:
+        return l->layers;
+    case V_max_nodes:
+        return l->max_nodes;
+    case V_max_list:
+        return l->max_list;
+    case V_pitch:
+        return l->pitch;
+    case V_pass:
+        return pass;
+    default:
+        return 0;
+    }
+}
+
 /* Arguments that never change; frame, round and level are set when a pass is enqueued. */
 static vit_status set_arguments(vit_opencl *d, vit_text *why) {
     const vit_launch *l = d->launch;
@@ -269,12 +289,7 @@ static vit_status set_arguments(vit_opencl *d, vit_text *why) {
             uint32_t a = vit_passes[p].args[i];
             if (a == B_work && !vit_buffer_called(a, l))
                 break;
-            uint32_t value = a == V_run         ? l->run
-                             : a == V_layers    ? l->layers
-                             : a == V_max_nodes ? l->max_nodes
-                             : a == V_max_list  ? l->max_list
-                                                : 0;
-            value = a == V_pass ? p : a == V_pitch ? l->pitch : value;
+            const uint32_t value = fixed_value(a, p, l);
             cl_int e = a < B_COUNT ? clSetKernelArg(d->kernels[p], i, sizeof(cl_mem), d->buffers[a] ? &d->buffers[a] : NULL)
                                    : clSetKernelArg(d->kernels[p], i, sizeof value, &value);
             if (e != CL_SUCCESS)
@@ -377,10 +392,9 @@ static vit_status set_varying(vit_opencl *d, const vit_step *step, vit_text *why
         uint32_t a = vit_passes[pass].args[i];
         if (a != V_frame && a != V_level && a != V_chunks && a != V_round)
             continue;
-        uint32_t value = a == V_frame   ? step->frame
-                         : a == V_round ? step->round
-                         : a == V_level ? step->level
-                                        : vit_pass_chunks(&vit_passes[pass], d->launch, step->level);
+        uint32_t value = a == V_frame ? step->frame : a == V_round ? step->round : step->level;
+        if (a == V_chunks)
+            value = vit_pass_chunks(&vit_passes[pass], d->launch, step->level);
         cl_int e = clSetKernelArg(d->kernels[pass], i, sizeof value, &value);
         if (e != CL_SUCCESS)
             return failed(why, vit_passes[pass].name, e);

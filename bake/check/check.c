@@ -132,7 +132,9 @@ typedef struct ranked {
 
 static int in_order(const void *a, const void *b) {
     const ranked *x = a, *y = b;
-    return x->by < y->by ? -1 : x->by > y->by ? 1 : x->spot < y->spot ? -1 : 1;
+    if (x->by != y->by)
+        return x->by < y->by ? -1 : 1;
+    return x->spot < y->spot ? -1 : 1;
 }
 
 /* Pixels that any light but their own could change: not the background, nor area lights alone. */
@@ -156,7 +158,8 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
         for (uint32_t i = 0; i < c->count; i++)
             if (counts(c->spots + i, picture, i))
                 order[count++] = (ranked){half_of(c->spots + i, first), i};
-        qsort(order, count, sizeof *order, in_order);
+        if (count > 0)
+            qsort(order, count, sizeof *order, in_order);
         for (uint32_t k = 0; k < (count + 1) / 2; k++) {
             const uint32_t i = order[k].spot;
             right += half_of(c->spots + i, 2 - first) / 2;
@@ -189,9 +192,10 @@ static void look_at_brightness(const check *c, const float *picture, check_found
         out->unhit += !c->spots[i].hit / (double)c->count;
         order[i] = (ranked){most, i};
     }
-    qsort(order, c->count, sizeof *order, in_order);
+    if (c->count > 0)
+        qsort(order, c->count, sizeof *order, in_order);
     out->white = hit > 0 ? white / (double)hit : 0;
-    out->median = order[c->count / 2].by;
+    out->median = c->count > 0 ? order[c->count / 2].by : 0;
 }
 
 static double beyond(check_ratio r) {

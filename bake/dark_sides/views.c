@@ -68,7 +68,8 @@ static int in_order(const void *a, const void *b) {
 
 /* Irradiance of `count` places, which it sorts, to threshold. */
 static float threshold_of(const views *v, float *seen, uint32_t count) {
-    qsort(seen, count, sizeof *seen, in_order);
+    if (count > 0)
+        qsort(seen, count, sizeof *seen, in_order);
     const float level = count > 0 ? seen[(uint32_t)(BELOW_LEVEL * (double)(count - 1))] : 0.0f;
     return fminf(DARK_SIDES_VIEW * level, v->s->threshold);
 }

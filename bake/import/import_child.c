@@ -148,8 +148,10 @@ static outcome hear(importer *im, wire *in, bool *last) {
     *last = true;
     if (!wire_receive_head(in, &head))
         return ENDED;
+    if (head.kind == WIRE_MODEL && wire_receive_model(im, head.size, in))
+        return READ;
     if (head.kind == WIRE_MODEL)
-        return wire_receive_model(im, head.size, in) ? READ : in->refused ? REFUSED : in->ended ? ENDED : NONSENSE;
+        return in->refused ? REFUSED : in->ended ? ENDED : NONSENSE;
     if (!wire_receive_text(in, head.size, line, sizeof line))
         return in->ended ? ENDED : NONSENSE;
     if (head.kind == WIRE_FAILURE) {

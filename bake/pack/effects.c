@@ -146,10 +146,16 @@ static int say_materials(sentence *s, uint64_t effect, const model *m, const vit
 
 /* The record of what the effect acts on that is no material; -1: it acts on materials. */
 static int other(uint64_t effect, int materials) {
-    return effect == VIT_BIT(SMOOTH)      ? materials
-           : effect == VIT_BIT(SKY_IMAGE) ? materials + 1
-           : effect == VIT_BIT(CUTOUT)    ? materials + 2
-                                          : -1;
+    switch (effect) {
+    case VIT_BIT(SMOOTH):
+        return materials;
+    case VIT_BIT(SKY_IMAGE):
+        return materials + 1;
+    case VIT_BIT(CUTOUT):
+        return materials + 2;
+    default:
+        return -1;
+    }
 }
 
 static const char *what_is_other(uint64_t effect) {

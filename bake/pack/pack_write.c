@@ -208,10 +208,13 @@ static vit_status fail_file(vit_text *why, const char *path, const char *step, i
 /* Returns the step that failed, with errno, or NULL. Closes `file` in any case, and last of all, since its lock goes with it.
  */
 static const char *fill_and_rename(int file, const char *path, const void *bytes, size_t size) {
-    const char *failed = !write_all(file, bytes, size)       ? "write"
-                         : fsync(file) != 0                  ? "fsync"
-                         : rename(temporary.path, path) != 0 ? "rename"
-                                                             : NULL;
+    const char *failed = NULL;
+    if (!write_all(file, bytes, size))
+        failed = "write";
+    else if (fsync(file) != 0)
+        failed = "fsync";
+    else if (rename(temporary.path, path) != 0)
+        failed = "rename";
     const int error = errno;
     if (failed)
         unlink(temporary.path);

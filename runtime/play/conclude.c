@@ -109,6 +109,14 @@ static vit_status judge(const player *p, conclusion *c) {
     return status;
 }
 
+static const char *what_became_of_frames(const play_options *o) {
+    if (o->verify)
+        return "; every hash is the pack's";
+    if (o->golden != NULL)
+        return "; every hash is the file's";
+    return o->out_given || o->hash ? "" : "; none kept (no --out)";
+}
+
 static void summarise(const player *p) {
     const play_options *o = p->options;
     if (p->pacing.late > 0)
@@ -116,12 +124,7 @@ static void summarise(const player *p) {
     vit_text name;
     const char *device = vit_device_name(p->info.device, &name);
     if (options_plays(o))
-        report_closing(&p->report, device != NULL ? device : "a device that is gone",
-                       o->verify                 ? "; every hash is the pack's"
-                       : o->golden != NULL       ? "; every hash is the file's"
-                       : o->out_given || o->hash ? ""
-                                                 : "; none kept (no --out)",
-                       stderr);
+        report_closing(&p->report, device != NULL ? device : "a device that is gone", what_became_of_frames(o), stderr);
     if (options_counts(o) && p->work.frames > 0)
         (void)fprintf(stderr, "work of %" PRIu64 " %s counted%s\n", p->work.frames, p->work.frames == 1 ? "frame" : "frames",
                       o->work_budget != NULL ? ", within its budget" : "");

@@ -28,10 +28,15 @@ bool pocl_is_named(const char *text) {
 /* As PoCL looks for it. */
 static bool find_folder(char *path, size_t size) {
     const char *named = getenv("POCL_CACHE_DIR"), *caches = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    int length = named != NULL && named[0] != '\0'     ? snprintf(path, size, "%s", named)
-                 : caches != NULL && caches[0] != '\0' ? snprintf(path, size, "%s/pocl", caches)
-                 : home != NULL                        ? snprintf(path, size, "%s/.cache/pocl", home)
-                                                       : snprintf(path, size, "/tmp/pocl");
+    int length;
+    if (named != NULL && named[0] != '\0')
+        length = snprintf(path, size, "%s", named);
+    else if (caches != NULL && caches[0] != '\0')
+        length = snprintf(path, size, "%s/pocl", caches);
+    else if (home != NULL)
+        length = snprintf(path, size, "%s/.cache/pocl", home);
+    else
+        length = snprintf(path, size, "/tmp/pocl");
     return length > 0 && (size_t)length < size;
 }
 

@@ -33,9 +33,27 @@ times times_of(const double *column, size_t count, double *scratch) {
 }
 
 double times_percentile(const times *t, unsigned percentile) {
-    return percentile == 50 ? t->p50 : percentile == 95 ? t->p95 : percentile == 99 ? t->p99 : t->max;
+    switch (percentile) {
+    case 50:
+        return t->p50;
+    case 95:
+        return t->p95;
+    case 99:
+        return t->p99;
+    default:
+        return t->max;
+    }
 }
 
 const char *times_percentile_name(unsigned percentile) {
-    return percentile == 50 ? "p50" : percentile == 95 ? "p95" : percentile == 99 ? "p99" : "max";
+    switch (percentile) {
+    case 50:
+        return "p50";
+    case 95:
+        return "p95";
+    case 99:
+        return "p99";
+    default:
+        return "max";
+    }
 }
