@@ -150,7 +150,7 @@ static double limited_of(const spot *s, uint32_t first) {
 /* The darker half by one pair of sequences, measured by the other pair, both ways: which pixels are in it would otherwise
  * follow the very noise that is measured, and the reference would seem too dark. */
 static check_ratio compare_dark(const check *c, const float *picture, double mean, double *share) {
-    ranked order[CHECK_PIXELS];
+    ranked order[CHECK_PIXELS] = {{0}};
     unsigned in[CHECK_PIXELS] = {0};
     double right = 0, limited = 0, seen = 0, variance = 0, pixels = 0;
     for (uint32_t first = 0; first < REFERENCE_SEQUENCES; first += 2) {
@@ -158,8 +158,7 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
         for (uint32_t i = 0; i < c->count; i++)
             if (counts(c->spots + i, picture, i))
                 order[count++] = (ranked){half_of(c->spots + i, first), i};
-        if (count > 0)
-            qsort(order, count, sizeof *order, in_order);
+        qsort(order, count, sizeof *order, in_order);
         for (uint32_t k = 0; k < (count + 1) / 2; k++) {
             const uint32_t i = order[k].spot;
             right += half_of(c->spots + i, 2 - first) / 2;
@@ -179,7 +178,7 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
 }
 
 static void look_at_brightness(const check *c, const float *picture, check_found *out) {
-    ranked order[CHECK_PIXELS];
+    ranked order[CHECK_PIXELS] = {{0}};
     uint32_t white = 0, hit = 0;
     for (uint32_t i = 0; i < c->count; i++) {
         const float *q = picture + 3 * (size_t)i;
@@ -192,10 +191,9 @@ static void look_at_brightness(const check *c, const float *picture, check_found
         out->unhit += !c->spots[i].hit / (double)c->count;
         order[i] = (ranked){most, i};
     }
-    if (c->count > 0)
-        qsort(order, c->count, sizeof *order, in_order);
+    qsort(order, c->count, sizeof *order, in_order);
     out->white = hit > 0 ? white / (double)hit : 0;
-    out->median = c->count > 0 ? order[c->count / 2].by : 0;
+    out->median = order[c->count / 2].by;
 }
 
 static double beyond(check_ratio r) {
