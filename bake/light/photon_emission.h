@@ -2,8 +2,23 @@
 #ifndef VIT_BAKE_PHOTON_EMISSION_H
 #define VIT_BAKE_PHOTON_EMISSION_H
 
+#include "light/area_lights.h"
 #include "light/photon_rays.h"
-#include "light/photons.h"
+#include "light/sky.h"
+
+#define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
+
+/* A light, or all area lights together, or the sky. */
+typedef struct photons_light {
+    vit_light light;         /* its record, the same in all frames; path_first and path_count do not count */
+    uint32_t paths;          /* 1..PHOTONS_MAX_PATHS; 0: none */
+    const area_lights *area; /* not NULL: the area lights, and `light` does not count */
+    const environment *sky;  /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere
+                        round the  scene */
+    const struct guiding_tree *guide; /* where its paths start and how they first reflect (guiding_tree.h); NULL: evenly */
+    vec3 around; /* of the sky, guided: the place that positions across its directions are counted from, so that a window is in
+                    one place from all of them */
+} photons_light;
 
 /* A photon as it leaves a light. */
 typedef struct emission {

@@ -141,7 +141,7 @@ static void trace(void *user, uint32_t slot) {
         const photon_surface s = photon_surface_at(&in->scene, o, d, t, triangle);
         const float u = throw(&random), v = throw(&random);
         if (VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) != VIT_MATTE) {
-            d = photons_emitted(&s, d, t, u, &o, &power);
+            d = photons_specular_bounce(&s, d, t, u, &o, &power);
             others++;
             continue;
         }

@@ -54,7 +54,7 @@ static bool has_power(vec3 p) {
     return p.x + p.y + p.z > 0.0f;
 }
 
-vec3 photons_emitted(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
+vec3 photons_specular_bounce(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power) {
     const vit_material *m = s->material;
     vec3 tint = vec3_load(m->specular);
     vec3 on = specular_mirrored(d, s->normal, s->face);
@@ -117,7 +117,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
             from = s.face;
         } else {
             from = (vec3){0.0f, 0.0f, 0.0f};
-            d = photons_emitted(&s, d, t, u, &o, &power);
+            d = photons_specular_bounce(&s, d, t, u, &o, &power);
         }
         if (!has_power(power))
             return;

@@ -3,25 +3,8 @@
 #ifndef VIT_BAKE_PHOTONS_H
 #define VIT_BAKE_PHOTONS_H
 
-#include "geometry/atlas.h"
 #include "geometry/cells.h"
-#include "light/area_lights.h"
-#include "light/photon_surface.h"
-#include "light/sky.h"
-
-#define PHOTONS_MAX_PATHS (1u << 20) /* of one light: the emission's integer arithmetic */
-
-/* A light, or all area lights together, or the sky. */
-typedef struct photons_light {
-    vit_light light;         /* its record, the same in all frames; path_first and path_count do not count */
-    uint32_t paths;          /* 1..PHOTONS_MAX_PATHS; 0: none */
-    const area_lights *area; /* not NULL: the area lights, and `light` does not count */
-    const environment *sky;  /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere
-                        round the  scene */
-    const struct guiding_tree *guide; /* where its paths start and how they first reflect (guiding_tree.h); NULL: evenly */
-    vec3 around; /* of the sky, guided: the place that positions across its directions are counted from, so that a window is in
-                    one place from all of them */
-} photons_light;
+#include "light/photon_emission.h"
 
 /* `done` runs from 0 to 1. Called by the thread that called photons_bake(). */
 typedef void photons_progress_fn(void *user, double done);
@@ -53,6 +36,6 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
 
 /* Where a path goes at a mirror or glass, u a random number: Fresnel's part of the paths is mirrored. *power and *o follow; t:
  * its way so far, m. */
-vec3 photons_emitted(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
+vec3 photons_specular_bounce(const photon_surface *s, vec3 d, float t, float u, vec3 *o, vec3 *power);
 
 #endif

@@ -200,40 +200,27 @@ static bool has_paths(const tracks *t, const plan *p) {
     return some;
 }
 
-vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
+/* The pack's constants. */
+static void plan_constants(const plan_input *in, vit_scene *c) {
     const scene *s = in->scene;
-    const model *m = in->model;
-    tracks *t = in->tracks;
     const atlas *a = in->atlas;
-    const bvh *b = in->bvh;
-    const geometry *g = in->geometry;
-    const dark_sides *r = in->dark_sides;
-    memset(out, 0, sizeof *out);
-    vit_scene *c = &out->scene;
-    out->materials = calloc((size_t)m->material_count, sizeof *out->materials);
-    out->baked_paths = calloc(t->light_count + 1u, sizeof *out->baked_paths);
-    if (!out->materials || !out->baked_paths) {
-        plan_free(out);
-        return bake_fail(why, VIT_FAILED, "out of memory");
-    }
-    plan_materials(m, a, out); /* 1. constants */
     c->width = (uint32_t)s->width;
     c->height = (uint32_t)s->height;
     c->frames = (uint32_t)s->frames;
     c->fps = (float)s->fps;
     c->tile = (uint32_t)s->quality.tile;
-    c->triangles = m->triangles;
-    c->nodes = b->node_count;
-    c->materials = (uint32_t)m->material_count;
+    c->triangles = in->model->triangles;
+    c->nodes = in->bvh->node_count;
+    c->materials = (uint32_t)in->model->material_count;
     c->textures = a->texture_count;
     c->mips = a->mip_count;
     c->texels = a->texel_count;
-    c->lights = t->light_count;
+    c->lights = in->tracks->light_count;
     c->bounces = (uint32_t)s->quality.bounces;
-    c->ray_offset = g->ray_offset;
-    c->box_pad = b->box_pad;
-    c->slice_near = (float)t->near;
-    c->slice_scale = slice_scale(s, t);
+    c->ray_offset = in->geometry->ray_offset;
+    c->box_pad = in->bvh->box_pad;
+    c->slice_near = (float)in->tracks->near;
+    c->slice_scale = slice_scale(s, in->tracks);
     c->slice_count = 4096;
     for (int k = 0; k < 3; k++) {
         c->background[k] = (float)s->background[k];
@@ -243,51 +230,81 @@ vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
     if (c->copies > 1)
         c->contrast = (float)s->quality.antialias_contrast;
     copies_place(c->copies, s->quality.tent, c->offset);
-    const photon_scene lit = {.triangles = g->triangles,
-                              .attributes = g->attributes,
+}
+
+/* Area lights, and who gets how many photon paths. */
+static vit_status plan_lights(const plan_input *in, plan *p, vit_text *why) {
+    const model *m = in->model;
+    const photon_scene lit = {.triangles = in->geometry->triangles,
+                              .attributes = in->geometry->attributes,
                               .triangle_count = m->triangles,
-                              .materials = out->materials,
-                              .atlas = a,
-                              .ray_offset = g->ray_offset,
-                              .box_pad = b->box_pad};
-    sky_sphere(m->lo, m->hi, out->sky_center, &out->sky_radius); /* 2. lights, and who gets how many photon paths */
-    vit_status status = area_lights_find(&lit, t->cameras, (uint32_t)s->frames, in->threads, &out->area, why);
-    if (status == VIT_OK)
-        status = share_paths(in, NULL, out, why);
-    if (status != VIT_OK) {
-        plan_free(out);
-        return status;
-    }
-    /* 3. effects that the scene calls for, then what `effects` of the scene file says of them */
-    c->effects = effects_of_lights(s, t) | effects_of_materials(s, m, out) | effects_of_indirect(s, out);
+                              .materials = p->materials,
+                              .atlas = in->atlas,
+                              .ray_offset = in->geometry->ray_offset,
+                              .box_pad = in->bvh->box_pad};
+    sky_sphere(m->lo, m->hi, p->sky_center, &p->sky_radius);
+    const vit_status status =
+        area_lights_find(&lit, in->tracks->cameras, (uint32_t)in->scene->frames, in->threads, &p->area, why);
+    return status == VIT_OK ? share_paths(in, NULL, p, why) : status;
+}
+
+/* Effects that the scene calls for, then what `effects` of the scene file says of them. */
+static void plan_effects(const plan_input *in, plan *p) {
+    const scene *s = in->scene;
+    vit_scene *c = &p->scene;
+    c->effects = effects_of_lights(s, in->tracks) | effects_of_materials(s, in->model, p) | effects_of_indirect(s, p);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
     if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
         c->chain = (uint32_t)s->quality.specular_depth;
         c->effects |= s->quality.caustics && (c->effects & VIT_BIT(PHOTONS)) ? VIT_BIT(CAUSTICS) : 0;
     }
-    c->effects |= plan_area_lights(s, in->sky, out);
+    c->effects |= plan_area_lights(s, in->sky, p);
     if (s->quality.sample_bits == 16) {
         c->effects |= VIT_BIT(SMALL_SAMPLES);
-        plan_grid(m, c);
+        plan_grid(in->model, c);
     }
-    for (uint32_t i = 0; i < m->triangles; i++)
-        if (g->attributes[i].material & VIT_TRIANGLE_SMOOTH)
+    for (uint32_t i = 0; i < in->model->triangles; i++)
+        if (in->geometry->attributes[i].material & VIT_TRIANGLE_SMOOTH)
             c->effects |= VIT_BIT(SMOOTH);
-    if (r->dark_sides > 0)
+    if (in->dark_sides->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
-    effects_force(s, c, &out->effects);
-    out->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? out->area_paths : 0;
-    out->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? out->sky_paths : 0;
-    if (!has_paths(t, out)) /* its sources were left out */
+    effects_force(s, c, &p->effects);
+    p->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
+    p->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
+    if (!has_paths(in->tracks, p)) /* its sources were left out */
         effects_drop(c, VIT_BIT(PHOTONS));
-    if (c->effects & VIT_BIT(PHOTONS)) { /* 4. the photons' radius */
-        out->lit_area = lit_area(r);
-        out->free_path = r->free_path;
-        double slots = (double)s->quality.photons * (s->quality.bounces - 1);
-        c->radius = (float)(s->quality.radius > 0 ? s->quality.radius : plan_radius(out, slots));
-        c->flatten = s->quality.flattened ? (float)s->quality.flatten : 0.0f;
+}
+
+/* The photons' radius, as long as nobody has counted them. */
+static void plan_photons(const plan_input *in, plan *p) {
+    const scene_quality *q = &in->scene->quality;
+    if (!(p->scene.effects & VIT_BIT(PHOTONS)))
+        return;
+    p->lit_area = lit_area(in->dark_sides);
+    p->free_path = in->dark_sides->free_path;
+    const double slots = (double)q->photons * (q->bounces - 1);
+    p->scene.radius = (float)(q->radius > 0 ? q->radius : plan_radius(p, slots));
+    p->scene.flatten = q->flattened ? (float)q->flatten : 0.0f;
+}
+
+vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
+    memset(out, 0, sizeof *out);
+    out->materials = calloc((size_t)in->model->material_count, sizeof *out->materials);
+    out->baked_paths = calloc(in->tracks->light_count + 1u, sizeof *out->baked_paths);
+    if (!out->materials || !out->baked_paths) {
+        plan_free(out);
+        return bake_fail(why, VIT_FAILED, "out of memory");
     }
+    plan_materials(in->model, in->atlas, out);
+    plan_constants(in, &out->scene);
+    const vit_status status = plan_lights(in, out, why);
+    if (status != VIT_OK) {
+        plan_free(out);
+        return status;
+    }
+    plan_effects(in, out);
+    plan_photons(in, out);
     return VIT_OK;
 }
 

@@ -1,7 +1,7 @@
 #include "scene/fields.h"
 #include "common/names.h"
 #include "common/option_text.h"
-#include "scene/scene.h"
+#include "scene/text_sizes.h"
 #include <float.h>
 #include <limits.h>
 #include <math.h>

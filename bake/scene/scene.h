@@ -4,11 +4,9 @@
 
 #include "common/inputs.h"
 #include "scene/settings.h"
+#include "scene/text_sizes.h"
 #include "vitrine.h"
 #include <stdbool.h>
-
-#define SCENE_PATH 1024
-#define SCENE_NAME 128
 
 typedef struct scene_mesh {
     char file[SCENE_PATH]; /* resolved against the scene file's folder */
