@@ -152,12 +152,14 @@ vit_status vit_require(const vit_open_info *info, vit_requirements *need, vit_te
     return status;
 }
 
-/* Lays vit, the device's state and what was swapped out in the arena. */
-static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, const vit_launch *l, const vit_device *device,
-                             vit **out, vit_device_setup *setup, vit_text *why) {
+/* Lays vit, the device's state and what was swapped out in the arena. NULL: it is too small, or not aligned. */
+static vit *take_arena(const vit_open_info *info, const vit_pack *pack, const vit_launch *l, const vit_device *device,
+                       vit_device_setup *setup, vit_text *why) {
     size_t need = host_bytes(device, pack, l, info->framebuffer != NULL);
-    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need)
-        return vit_fail(why, VIT_USAGE, "the arena must be aligned to 64 bytes and hold %zu", need);
+    if (!info->arena || (uintptr_t)info->arena % 64 != 0 || info->arena_size < need) {
+        vit_fail(why, VIT_USAGE, "the arena must be aligned to 64 bytes and hold %zu", need);
+        return NULL;
+    }
     vit *v = info->arena;
     memset(v, 0, round_up(sizeof *v) + round_up(device->state_bytes));
     v->pack = *pack;
@@ -169,8 +171,7 @@ static vit_status take_arena(const vit_open_info *info, const vit_pack *pack, co
     v->state = (char *)info->arena + round_up(sizeof *v);
     v->profile = info->profile != 0;
     *setup = (vit_device_setup){info, &v->pack, &v->launch, v->state, swapped + swapped_bytes(pack)};
-    *out = v;
-    return VIT_OK;
+    return v;
 }
 
 /* Devices leave work to the first run of a kernel: PoCL compiles it again for its size of work-group, drivers of GPUs load it.
@@ -198,15 +199,15 @@ vit_status vit_open(const vit_open_info *info, vit **out, vit_text *why) {
     vit_launch l;
     vit_device_setup setup;
     const vit_device *device;
-    vit *v = NULL;
     *out = NULL;
     vit_status status = look_at(info, &pack, &l, &device, why);
     if (status == VIT_OK)
         status = device->suit(info, pack.scene, &l, why);
-    if (status == VIT_OK)
-        status = take_arena(info, &pack, &l, device, &v, &setup, why);
     if (status != VIT_OK)
         return status;
+    vit *v = take_arena(info, &pack, &l, device, &setup, why);
+    if (!v)
+        return VIT_USAGE;
     status = device->open(&setup, why);
     if (status == VIT_OK)
         status = warm_up(v, why);

@@ -258,7 +258,7 @@ static void compare_parts(const check *c, const float *picture, const float *dir
 
 vit_status check_compare(const pipeline *p, const pipeline_packed *packed, const check *c, bool parts, check_found *out,
                          vit_text *why) {
-    float picture[3 * CHECK_PIXELS], direct[3 * CHECK_PIXELS];
+    float picture[3 * CHECK_PIXELS] = {0}, direct[3 * CHECK_PIXELS] = {0};
     vit_status status = play(p, packed, c, VIT_VIEW_final, picture, why);
     if (status == VIT_OK)
         compare(c, picture, out);

@@ -83,7 +83,7 @@ static vit_status measure(const void *pack, size_t size, unsigned threads, uint6
 static vit_status measure_without(const pipeline_packed *p, uint64_t effect, unsigned threads, const effect_costs *whole,
                                   effect_cost *out, vit_text *why) {
     void *pack = NULL;
-    size_t size;
+    size_t size = 0;
     uint64_t bytes, work;
     vit_status status = effect_cost_without(&p->sections, effect, &pack, &size, why);
     if (status == VIT_OK)

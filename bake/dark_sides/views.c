@@ -128,6 +128,8 @@ static void ask_for_light(void *user, uint32_t side) {
 static bool look_closer(views *v, unsigned threads) {
     dark_sides_search *s = v->s;
     const size_t all = (size_t)v->dim * MOST_RAYS;
+    if (all == 0)
+        return true;
     for (uint32_t side = 0; side < s->sides; side++)
         s->more[side] = 0;
     for (size_t i = 0; i < all; i++)

@@ -266,9 +266,9 @@ vit_status sky_load(const char *file, double scale, double rotate, environment *
     int size, width = 0, height = 0;
     float *rgb = NULL;
     uint8_t *bytes = image_file_read(file, &size);
-    const char *wrong = bytes                ? decode(bytes, size, scale, &width, &height, &rgb)
-                        : file_trouble(file) ? file_trouble(file)
-                                             : "is empty or cannot be read";
+    const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : file_trouble(file);
+    if (!bytes && !wrong)
+        wrong = "is empty or cannot be read";
     vit_status status = VIT_BAD_INPUT;
     *out = (environment){0};
     if (wrong)

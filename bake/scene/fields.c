@@ -313,7 +313,7 @@ bool fields_put(const config_field *f, const char *text, void *out) {
         found = fields_place(f->allowed, text);
         if (found < 0)
             return false;
-        *(int *)to = f->kind == FIELD_WORD ? found : atoi(text);
+        *(int *)to = f->kind == FIELD_WORD ? found : (int)strtol(text, NULL, 10);
         return true;
     case FIELD_TEXT:
     case FIELD_PATH:

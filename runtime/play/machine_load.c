@@ -1,26 +1,34 @@
 #include "machine_load.h"
-#include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/times.h>
 
 #define LEAST_TICKS 20 /* of all processors together: the counters go in steps of one */
 
 machine_load machine_load_now(void) {
     machine_load l = {0};
-    uint64_t user, nice, system, idle, wait, irq, soft, steal;
+    enum { USER, NICE, SYSTEM, IDLE, WAIT, IRQ, SOFT, STEAL, TICKS };
+    uint64_t ticks[TICKS];
+    char line[512];
     struct tms own;
     FILE *f = fopen("/proc/stat", "re");
     if (f == NULL)
         return l;
-    /* Numbers of the system's own. NOLINTNEXTLINE(cert-err34-c) */
-    const int read =
-        fscanf(f, "cpu %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64 " %" SCNu64, &user,
-               &nice, &system, &idle, &wait, &irq, &soft, &steal);
+    const char *at = fgets(line, sizeof line, f);
     (void)fclose(f);
-    if (read != 8 || times(&own) == (clock_t)-1)
+    if (at == NULL || strncmp(at, "cpu ", 4) != 0 || times(&own) == (clock_t)-1)
         return l;
-    l.busy = user + nice + system + irq + soft + steal;
-    l.all = l.busy + idle + wait;
+    at += 4;
+    for (int i = 0; i < TICKS; i++) {
+        char *end;
+        ticks[i] = strtoull(at, &end, 10);
+        if (end == at)
+            return l;
+        at = end;
+    }
+    l.busy = ticks[USER] + ticks[NICE] + ticks[SYSTEM] + ticks[IRQ] + ticks[SOFT] + ticks[STEAL];
+    l.all = l.busy + ticks[IDLE] + ticks[WAIT];
     l.own = (uint64_t)(own.tms_utime + own.tms_stime);
     return l;
 }

@@ -45,14 +45,13 @@ static void cut_to_existing(char *path) {
     struct stat s;
     while (stat(path, &s) != 0 && (errno == ENOENT || errno == ENOTDIR)) {
         char *slash = strrchr(path, '/');
-        if (slash == NULL)
-            (void)strcpy(path, ".");
-        else if (slash == path)
-            path[1] = '\0';
-        else
+        if (slash != NULL && slash != path) {
             *slash = '\0';
-        if (slash == NULL || slash == path)
-            return;
+            continue;
+        }
+        path[0] = slash == NULL ? '.' : '/'; /* there is room for it: path named something below */
+        path[1] = '\0';
+        return;
     }
 }
 
