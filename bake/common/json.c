@@ -20,10 +20,9 @@ uint32_t text_character(const char *text) {
     const unsigned char *t = (const unsigned char *)text;
     if (t[0] < 0x80)
         return 1;
-    const uint32_t count = t[0] >= 0xC2 && t[0] < 0xE0   ? 2
-                           : t[0] >= 0xE0 && t[0] < 0xF0 ? 3
-                           : t[0] >= 0xF0 && t[0] < 0xF5 ? 4
-                                                         : 0;
+    uint32_t count = 0;
+    if (t[0] >= 0xC2 && t[0] < 0xF5)
+        count = t[0] < 0xE0 ? 2 : t[0] < 0xF0 ? 3 : 4;
     for (uint32_t i = 1; i < count; i++)
         if ((t[i] & 0xC0) != 0x80)
             return 0;

@@ -66,8 +66,8 @@ vit_status bounces_solve(const form_factors *f, const patch_set *p, uint32_t k, 
                 break;
         }
         if (*spectral >= 1.0 || (k == BOUNCES_CONVERGED && h == MOST_BOUNCES)) {
-            status = bake_fail(why, VIT_BAD_INPUT,
-                               "light between surfaces does not die out: each reflection leaves %.4g of it", *spectral);
+            status = bake_fail(why, VIT_BAD_INPUT, "light between surfaces does not die out: each reflection leaves %.4g of it",
+                               *spectral);
         }
     } else {
         status = bake_fail(why, VIT_FAILED, "bounces: out of memory");

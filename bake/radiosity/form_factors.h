@@ -24,8 +24,8 @@ typedef struct form_factors_input {
     const photon_rays *rays;
     const geometry *geometry;
     const patch_set *patches;
-    uint32_t samples; /* rays per patch, 1..FORM_FACTORS_RAYS_MOST */
-    unsigned threads; /* 0: all cores; changes no byte */
+    uint32_t samples;                          /* rays per patch, 1..FORM_FACTORS_RAYS_MOST */
+    unsigned threads;                          /* 0: all cores; changes no byte */
     void (*progress)(void *user, double done); /* may be NULL; by the calling thread */
     void *user;
 } form_factors_input;

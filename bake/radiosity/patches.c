@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELLS_PER_PATCH 6.0f   /* cells are that much smaller than patches, if triangles are not small enough by themselves */
-#define BEND 1.0f              /* a quarter turn weighs as much as a distance of that many square roots of a patch's mean area */
-#define PAIRS 32u              /* pairs of a cluster's cells that are asked whether they see each other */
-#define LIFT 0.05f             /* how far above the surface these look, in square roots of the cluster's area */
-#define HIDDEN_WEIGHT 15.0     /* a cluster whose cells are all hidden from each other weighs so many times as much again */
-#define KEPT_FOR_HIDDEN 8u      /* of so many patches one is kept for clusters with hidden cells, however small they are */
-#define ALBEDO_SAMPLES 4u      /* places of a cell whose texels are looked at */
+#define CELLS_PER_PATCH 6.0f /* cells are that much smaller than patches, if triangles are not small enough by themselves */
+#define BEND 1.0f            /* a quarter turn weighs as much as a distance of that many square roots of a patch's mean area */
+#define PAIRS 32u            /* pairs of a cluster's cells that are asked whether they see each other */
+#define LIFT 0.05f           /* how far above the surface these look, in square roots of the cluster's area */
+#define HIDDEN_WEIGHT 15.0   /* a cluster whose cells are all hidden from each other weighs so many times as much again */
+#define KEPT_FOR_HIDDEN 8u   /* of so many patches one is kept for clusters with hidden cells, however small they are */
+#define ALBEDO_SAMPLES 4u    /* places of a cell whose texels are looked at */
 
 #define SEEN_WORTH 0.0625f /* of a cell that a camera sees, a path: it may give light, too */
 #define PATHS_PER_PATCH 64u
@@ -24,11 +24,11 @@ typedef struct cluster {
     uint32_t first, count; /* of order[] */
     double badness;
     uint32_t fork, right; /* of which fork it is which half; VIT_NONE: it is all */
-    double hidden;          /* share of pairs */
-    uint32_t apart[2];      /* cells that are hidden from each other, where some are */
-    float lift;             /* m, above the surface where cells look at each other */
-    float axis[6]; /* unit, in the space of place and normal times `bend` */
-    float middle;  /* along it */
+    double hidden;        /* share of pairs */
+    uint32_t apart[2];    /* cells that are hidden from each other, where some are */
+    float lift;           /* m, above the surface where cells look at each other */
+    float axis[6];        /* unit, in the space of place and normal times `bend` */
+    float middle;         /* along it */
 } cluster;
 
 /* How a cluster was split, for cells that no path has met. */
@@ -87,8 +87,8 @@ static void pilot_path(void *user, uint32_t path) {
     uint32_t chance = pcg(path ^ 0x5bd1e995u);
     patch_point *met = w->met + (size_t)PATH_HITS * path;
     const float x = unit_float(path * 0xc13fa9a9u) * (float)in->width, y = unit_float(path * 0x91e10da5u) * (float)in->height;
-    vec3 o = vec3_load(c->eye), d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), vec3_load(c->right), x),
-                                                          vec3_load(c->down), y));
+    vec3 o = vec3_load(c->eye),
+         d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), vec3_load(c->right), x), vec3_load(c->down), y));
     for (uint32_t hit = 0; hit < PATH_HITS; hit++)
         met[hit] = (patch_point){.side = VIT_NONE};
     for (uint32_t hit = 0; hit < PATH_HITS; hit++) {
@@ -160,7 +160,8 @@ static bool find_cells(clustering *k) {
     return true;
 }
 
-/* Does a cell of the cluster see another, from a little above the surface? Cells that turn away from each other do not count. */
+/* Does a cell of the cluster see another, from a little above the surface? Cells that turn away from each other do not count.
+ */
 enum { SEEN, HIDDEN, TURNED };
 static int sees(const clustering *k, const cluster *c, uint32_t a, uint32_t b) {
     const float *pa = k->at + 6 * (size_t)a, *pb = k->at + 6 * (size_t)b;
@@ -348,8 +349,7 @@ static void cell_albedo(const patches_input *in, const cells *c, uint32_t cell, 
 
 /* The patch of a cell that was not clustered: that where the tree of splits leads. */
 static uint32_t place(const clustering *k, uint32_t cell) {
-    const vec3 p = cells_center(&k->p->cells, k->in->geometry, cell),
-               n = side_face(k->in->geometry, k->p->cells.side_of[cell]);
+    const vec3 p = cells_center(&k->p->cells, k->in->geometry, cell), n = side_face(k->in->geometry, k->p->cells.side_of[cell]);
     const float at[6] = {p.x, p.y, p.z, n.x * k->bend, n.y * k->bend, n.z * k->bend};
     memcpy(k->at + 6 * (size_t)cell, at, sizeof at);
     uint32_t i = k->fork_count ? 0 : LEAF;
@@ -358,8 +358,7 @@ static uint32_t place(const clustering *k, uint32_t cell) {
         float sum = 0.0f;
         for (int d = 0; d < 6; d++)
             sum += f->axis[d] * at[d];
-        const bool left =
-            f->pair ? distance2(k, cell, f->apart[0]) < distance2(k, cell, f->apart[1]) : sum < f->middle;
+        const bool left = f->pair ? distance2(k, cell, f->apart[0]) < distance2(k, cell, f->apart[1]) : sum < f->middle;
         i = f->next[left ? 0 : 1];
     }
     return i & ~LEAF;

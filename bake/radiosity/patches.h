@@ -14,10 +14,10 @@
 typedef struct patches_input {
     const photon_rays *rays; /* of the scene whose materials and textures count */
     const geometry *geometry;
-    const tracks *tracks;    /* the path's cameras */
+    const tracks *tracks;           /* the path's cameras */
     uint32_t frames, width, height; /* of the path; pixels */
-    uint32_t count;   /* patches wanted, 1..PATCHES_MOST; there are fewer if there are fewer cells */
-    unsigned threads; /* 0: all cores; changes no byte */
+    uint32_t count;                 /* patches wanted, 1..PATCHES_MOST; there are fewer if there are fewer cells */
+    unsigned threads;               /* 0: all cores; changes no byte */
 } patches_input;
 
 typedef struct radiosity_patch {
@@ -38,13 +38,13 @@ typedef struct patch_set {
     cells cells;
     radiosity_patch *patch; /* count + 1: the last has no cells */
     uint32_t count;
-    uint32_t *cell;     /* all patches' cells, one patch after another */
-    double *cell_sum;   /* area of these cells up to the end of each, m2, anew in each patch */
+    uint32_t *cell;        /* all patches' cells, one patch after another */
+    double *cell_sum;      /* area of these cells up to the end of each, m2, anew in each patch */
     patch_point *points;   /* PATCHES_POINTS per patch: where paths from the cameras met it, as dense as they do */
     uint32_t *point_count; /* a patch: how many of its points are there */
-    uint32_t *patch_of; /* a cell: its patch, or VIT_NONE */
-    double area;        /* of all patches, m2 */
-    double hidden;      /* share of pairs of cells of a patch that something between them hides from each other, by area */
+    uint32_t *patch_of;    /* a cell: its patch, or VIT_NONE */
+    double area;           /* of all patches, m2 */
+    double hidden;         /* share of pairs of cells of a patch that something between them hides from each other, by area */
 } patch_set;
 
 /* VIT_FAILED: out of memory. On failure there is nothing to free. A scene without a cell that reflects has no patch. */

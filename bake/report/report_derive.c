@@ -69,20 +69,26 @@ static int compare_prices(const void *a, const void *b) {
     double x = 0, y = 0;
     switch (p->kind) {
     case REPORT_BUYS:
-        x = -p->rate, y = -q->rate;
+        x = -p->rate;
+        y = -q->rate;
         break;
     case REPORT_SAVES:
-        x = p->rate, y = q->rate;
+        x = p->rate;
+        y = q->rate;
         break;
     case REPORT_SAME:
-        x = p->ms, y = q->ms;
+        x = p->ms;
+        y = q->ms;
         break;
     case REPORT_GAIN:
     case REPORT_LOSES:
-        x = p->error, y = q->error;
+        x = p->error;
+        y = q->error;
         break;
     }
-    return x < y ? -1 : x > y ? 1 : p->setting < q->setting ? -1 : p->setting > q->setting;
+    if (x != y)
+        return x < y ? -1 : 1;
+    return p->setting < q->setting ? -1 : p->setting > q->setting;
 }
 
 uint32_t report_prices(const cost_results *r, report_measure by, report_price *out) {

@@ -44,6 +44,12 @@ static bool print_image(const cost_results *r, const report_pictures *p, uint32_
     return done;
 }
 
+static const char *on_which_fronts(const cost_setting *s) {
+    if (s->pareto && s->pareto_relmse)
+        return ", on both fronts";
+    return s->pareto ? ", on the front of NMSE" : s->pareto_relmse ? ", on the front of relMSE" : "";
+}
+
 static bool print_setting(const cost_results *r, const report_pictures *p, uint32_t i, FILE *to) {
     const cost_setting *s = &r->settings[i];
     (void)fprintf(to, "<section class=\"shown\" data-setting=\"%" PRIu32 "\"><h3>", i);
@@ -52,11 +58,7 @@ static bool print_setting(const cost_results *r, const report_pictures *p, uint3
     text_ms(to, s->ms);
     (void)fprintf(to, " ms, NMSE %.3g, relMSE %.3g, bias ", s->total.nmse, s->total.relmse);
     text_format(to, "%+.1f", 100 * s->total.bias);
-    (void)fprintf(to, " %%%s</p><div class=\"row\">\n",
-                  s->pareto && s->pareto_relmse ? ", on both fronts"
-                  : s->pareto                   ? ", on the front of NMSE"
-                  : s->pareto_relmse            ? ", on the front of relMSE"
-                                                : "");
+    (void)fprintf(to, " %%%s</p><div class=\"row\">\n", on_which_fronts(s));
     const bool done = print_image(r, p, i, "frame", "Frame", report_frame_uri, to) &&
                       print_image(r, p, i, "signed", "Signed error", report_signed_uri, to) &&
                       print_image(r, p, i, "squared", "Squared error", report_squared_uri, to);

@@ -153,7 +153,7 @@ static bool print_map(const cost_results *r, const float *image, const report_pi
         for (uint32_t x = 0; x < p->width; x++) {
             const block_sums s = sum_block(r, image, p, x, y);
             const double v = value(&s, mean);
-            *out++ = (uint8_t)lround((v >= 1 ? 1 : v > -1 ? v : v <= -1 ? -1 : 1) * (REPORT_COLOURS / 2) + REPORT_COLOURS / 2);
+            *out++ = (uint8_t)lround(fmin(fmax(isnan(v) ? 1 : v, -1), 1) * (REPORT_COLOURS / 2) + REPORT_COLOURS / 2);
         }
     const bool done = report_png_map(to, index, p->width, p->height, map);
     free(index);

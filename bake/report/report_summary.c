@@ -10,6 +10,16 @@ static void name(const cost_results *r, uint32_t i, FILE *to) {
     (void)fputs("</b>", to);
 }
 
+static const char *which_fronts(const cost_setting *s) {
+    if (s->pareto && s->pareto_relmse)
+        return "both Pareto fronts";
+    if (s->pareto)
+        return "the Pareto front of NMSE, not on that of relMSE";
+    if (s->pareto_relmse)
+        return "the Pareto front of relMSE, not on that of NMSE";
+    return "neither Pareto front: others are no slower and no further off, and better in one";
+}
+
 static void say_default(const cost_results *r, FILE *to) {
     const cost_setting *d = &r->settings[0];
     (void)fputs("<li>The <b>default</b> takes ", to);
@@ -18,11 +28,7 @@ static void say_default(const cost_results *r, FILE *to) {
     text_ms(to, d->ms_p95);
     (void)fprintf(to, " ms) at NMSE %.3g, relMSE %.3g and a bias of ", d->total.nmse, d->total.relmse);
     text_format(to, "%+.1f", 100 * d->total.bias);
-    (void)fprintf(to, " %%. It is on %s.</li>\n",
-                  d->pareto && d->pareto_relmse ? "both Pareto fronts"
-                  : d->pareto                   ? "the Pareto front of NMSE, not on that of relMSE"
-                  : d->pareto_relmse            ? "the Pareto front of relMSE, not on that of NMSE"
-                                     : "neither Pareto front: others are no slower and no further off, and better in one");
+    (void)fprintf(to, " %%. It is on %s.</li>\n", which_fronts(d));
 }
 
 /* Frames of an idle machine deviate by 1 or 2 %. */

@@ -57,7 +57,9 @@ static void cell_name(FILE *to, const cost_setting *s, bool is_default) {
 }
 
 static const char *front_text(const cost_setting *s) {
-    return s->pareto && s->pareto_relmse ? "both" : s->pareto ? "NMSE" : s->pareto_relmse ? "relMSE" : "";
+    if (s->pareto && s->pareto_relmse)
+        return "both";
+    return s->pareto ? "NMSE" : s->pareto_relmse ? "relMSE" : "";
 }
 
 static void print_setting(const cost_results *r, uint32_t i, FILE *to) {

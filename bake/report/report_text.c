@@ -19,15 +19,27 @@ void text_csv(FILE *to, const char *text) {
     (void)fputc('"', to);
 }
 
+/* What stands for a character in HTML; NULL: itself. */
+static const char *entity_of(char c) {
+    switch (c) {
+    case '&':
+        return "&amp;";
+    case '<':
+        return "&lt;";
+    case '>':
+        return "&gt;";
+    case '"':
+        return "&quot;";
+    case '\'':
+        return "&#39;";
+    default:
+        return text_is_control(c) ? " " : NULL;
+    }
+}
+
 void text_html(FILE *to, const char *text) {
     while (*text) {
-        const char *entity = *text == '&'             ? "&amp;"
-                             : *text == '<'           ? "&lt;"
-                             : *text == '>'           ? "&gt;"
-                             : *text == '"'           ? "&quot;"
-                             : *text == '\''          ? "&#39;"
-                             : text_is_control(*text) ? " "
-                                                      : NULL;
+        const char *entity = entity_of(*text);
         if (entity) {
             (void)fputs(entity, to);
             text++;
@@ -90,7 +102,10 @@ void text_3digits(FILE *to, double value) {
 }
 
 void text_ms(FILE *to, double ms) {
-    text_format(to, ms < 0.9995 ? "%.3f" : ms < 9.995 ? "%.2f" : ms < 99.95 ? "%.1f" : "%.0f", ms);
+    if (ms < 9.995)
+        text_format(to, ms < 0.9995 ? "%.3f" : "%.2f", ms);
+    else
+        text_format(to, ms < 99.95 ? "%.1f" : "%.0f", ms);
 }
 
 void text_count(FILE *to, uint64_t count) {
