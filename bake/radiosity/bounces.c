@@ -39,26 +39,27 @@ static double power_of(const patch_set *p, const float *light, uint32_t columns)
     return sum;
 }
 
-vit_status bounces_solve(const form_factors *f, const patch_set *p, uint32_t k, uint32_t columns, const float *direct,
-                         float *radiosity, unsigned threads, double *spectral, vit_text *why) {
+vit_status bounces_solve(const bounces_input *in, float *radiosity, double *spectral, vit_text *why) {
+    const form_factors *f = in->factors;
+    const uint32_t columns = in->columns, k = in->bounces;
     const size_t numbers = (size_t)f->count * columns;
     float *one = malloc((numbers + 1) * sizeof *one), *other = malloc((numbers + 1) * sizeof *other);
     vit_status status = one && other ? VIT_OK : VIT_FAILED;
     *spectral = 0.0;
     if (status == VIT_OK) {
-        memcpy(radiosity, direct, numbers * sizeof *radiosity);
-        memcpy(one, direct, numbers * sizeof *one);
-        double before = power_of(p, one, columns), all = before;
+        memcpy(radiosity, in->direct, numbers * sizeof *radiosity);
+        memcpy(one, in->direct, numbers * sizeof *one);
+        double before = power_of(in->patches, one, columns), all = before;
         uint32_t h = 0;
         for (; h < (k == BOUNCES_CONVERGED ? MOST_BOUNCES : k) && before > 0.0; h++) {
-            bounce b = {f, p, columns, one, other};
-            parallel_for(threads, f->count, reflect, &b);
+            bounce b = {f, in->patches, columns, one, other};
+            parallel_for(in->threads, f->count, reflect, &b);
             for (size_t i = 0; i < numbers; i++)
                 radiosity[i] += other[i];
             float *last = one;
             one = other;
             other = last;
-            const double now = power_of(p, one, columns);
+            const double now = power_of(in->patches, one, columns);
             *spectral = now / before;
             before = now;
             all += now;

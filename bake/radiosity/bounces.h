@@ -7,11 +7,18 @@
 
 #define BOUNCES_CONVERGED 0u /* as many as it takes until another adds less than 1e-6 of the whole */
 
-/* Adds reflections. direct: count x columns, radiosity (W/m2) that direct light gives each patch, `columns` numbers each, of
- * which number i has the colour channel i % 3; radiosity: the same with k reflections between patches added. *spectral: an
- * estimate of the largest eigenvalue of c F, of the brightest channel; the series converges below 1. VIT_FAILED: out of memory;
- * VIT_BAD_INPUT: it does not converge. */
-vit_status bounces_solve(const form_factors *f, const patch_set *p, uint32_t k, uint32_t columns, const float *direct,
-                         float *radiosity, unsigned threads, double *spectral, vit_text *why);
+typedef struct bounces_input {
+    const form_factors *factors;
+    const patch_set *patches;
+    uint32_t bounces;    /* reflections between patches, or BOUNCES_CONVERGED */
+    uint32_t columns;    /* numbers per patch; number i has the colour channel i % 3 */
+    const float *direct; /* radiosity that direct light gives each patch, W/m2: patches x columns */
+    unsigned threads;    /* 0: all cores; changes no byte */
+} bounces_input;
+
+/* radiosity: direct light with that of the reflections added, as large as `direct`. *spectral: an estimate of the largest
+ * eigenvalue of c F, of the brightest channel; the series converges below 1. VIT_FAILED: out of memory; VIT_BAD_INPUT: it does
+ * not converge. */
+vit_status bounces_solve(const bounces_input *in, float *radiosity, double *spectral, vit_text *why);
 
 #endif

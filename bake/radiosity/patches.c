@@ -428,6 +428,21 @@ static void keep_points(const clustering *k) {
             p->point_count[i] = PATCHES_POINTS;
 }
 
+/* From one cluster of all cells to as many as are wanted. */
+static void split_all(clustering *k) {
+    k->count = 1;
+    judge(k, 0);
+    while (k->count < k->in->count - k->in->count / KEPT_FOR_HIDDEN && split(k))
+        continue;
+    k->last = true;
+    for (uint32_t i = k->count; i-- > 0;) {
+        judge(k, i);
+        sink(k, i);
+    }
+    while (k->count < k->in->count && split(k))
+        continue;
+}
+
 vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) {
     clustering k = {.in = in, .p = out};
     memset(out, 0, sizeof *out);
@@ -442,19 +457,8 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
     k.clusters = calloc(in->count, sizeof *k.clusters);
     k.forks = calloc(in->count, sizeof *k.forks);
     bool fine = out->patch_of && k.clusters && k.forks && find_worth(&k) && find_cells(&k);
-    if (fine && k.clusters[0].count > 0) {
-        k.count = 1;
-        judge(&k, 0);
-        while (k.count < in->count - in->count / KEPT_FOR_HIDDEN && split(&k))
-            continue;
-        k.last = true;
-        for (uint32_t i = k.count; i-- > 0;) {
-            judge(&k, i);
-            sink(&k, i);
-        }
-        while (k.count < in->count && split(&k))
-            continue;
-    }
+    if (fine && k.clusters[0].count > 0)
+        split_all(&k);
     const uint32_t used = fine ? (k.count ? out->cells.count : 0) : 0;
     out->patch = calloc(k.count + 1u, sizeof *out->patch);
     out->cell_sum = malloc((used + 1u) * sizeof *out->cell_sum);

@@ -163,7 +163,9 @@ static void a_furnace_is_a_geometric_series(void **state) {
             vit_text why = {""};
             for (uint32_t h = 0; h <= (bounces[b] == BOUNCES_CONVERGED ? 5000 : bounces[b]); h++, term *= (double)albedo[a])
                 right += term;
-            assert_int_equal(bounces_solve(&l.f, &l.p, bounces[b], 3, direct, all, 1, &spectral, &why), VIT_OK);
+            const bounces_input in = {
+                .factors = &l.f, .patches = &l.p, .bounces = bounces[b], .columns = 3, .direct = direct, .threads = 1};
+            assert_int_equal(bounces_solve(&in, all, &spectral, &why), VIT_OK);
             assert_true(fabs(spectral - (double)albedo[a]) < 1e-3);
             for (uint32_t i = 0; i < 3 * l.p.count; i++)
                 if (fabs((double)all[i] / right - 1.0) > 1e-3)
