@@ -1,6 +1,7 @@
 /* vitrine-bake: a scene file or mesh to one pack (pipeline.c does the work). */
 #include "check/auto.h"
 #include "check/exposure.h"
+#include "common/fail.h"
 #include "cost/effect_cost.h"
 #include "cost/fit_pack.h"
 #include "list.h"
@@ -221,10 +222,8 @@ int main(int argc, char **argv) {
         b.progress = progress_make(b.options.quiet);
         status = run(&b, &why);
     }
-    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout))) {
-        snprintf(why.text, sizeof why.text, "standard output: write failed");
-        status = VIT_FAILED;
-    }
+    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        status = bake_fail(&why, VIT_FAILED, "standard output: write failed");
     if (status != VIT_OK)
         fprintf(stderr, "vitrine-bake: %s\n", why.text);
     pipeline_packed_free(&b.packed);

@@ -1,4 +1,5 @@
 #include "cost/fit_pack.h"
+#include "common/fail.h"
 #include "cost/machine.h"
 #include "cost/sweep.h"
 #include "cost/timing.h"
@@ -16,12 +17,12 @@ static vit_status measure(const pipeline *p, uint32_t device, const pipeline_pac
                       .ms = calloc(repeats, sizeof(double)),
                       .pass_ms = calloc((size_t)repeats * VIT_MAX_PASSES, sizeof(double))};
     const timing_input in = {.entries = &e, .count = 1, .device = device, .repeats = repeats};
-    vit_status status = VIT_FAILED;
+    vit_status status;
     progress_stage(p->progress, "the budget, on all frames");
     if (e.ms && e.pass_ms)
         status = timing_measure(&in, why);
     else
-        snprintf(why->text, sizeof why->text, "out of memory");
+        status = bake_fail(why, VIT_FAILED, "out of memory");
     progress_end(p->progress);
     if (status == VIT_OK)
         *p95 = timing_percentile(e.ms, repeats, 95);

@@ -1,5 +1,6 @@
 /* Settings made from the table: each knob alone, combinations, and what lies beside a setting. */
 #include "cost/knob_parts.h"
+#include "common/fail.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,11 +112,11 @@ vit_status knobs_open(const knobs_input *in, knob_list *out, vit_text *why) {
     *out = (knob_list){.base = {.name = "default", .knob = "default", .quality = *in->base, .scale = 1.0}, .most = in->most};
     out->settings = calloc(in->most, sizeof *out->settings);
     out->values = calloc((size_t)KNOBS, sizeof *out->values);
-    vit_status status = VIT_FAILED;
-    if (out->settings && out->values)
-        status = knob_find_values(in, &out->base, out->values, why);
-    else
-        snprintf(why->text, sizeof why->text, "out of memory");
+    if (!out->settings || !out->values) {
+        knobs_close(out);
+        return bake_fail(why, VIT_FAILED, "out of memory");
+    }
+    const vit_status status = knob_find_values(in, &out->base, out->values, why);
     if (status != VIT_OK) {
         knobs_close(out);
         return status;

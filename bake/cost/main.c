@@ -1,5 +1,6 @@
 /* vitrine-cost: scene -> sweep -> report, choice. */
 #include "check/exposure.h"
+#include "common/fail.h"
 #include "cost/converge.h"
 #include "cost/cost_options.h"
 #include "cost/cost_outputs.h"
@@ -54,11 +55,8 @@ static vit_status load(const cost_options *o, pipeline *p, vit_text *why) {
     status = spread_rank() == 0 ? cost_outputs_check(o, &p->scene, why) : VIT_OK; /* it writes for all */
     if (status == VIT_OK)
         status = cost_outputs_are_no_inputs(o, p, why);
-    if (spread_any(status != VIT_OK)) {
-        if (status == VIT_OK)
-            snprintf(why->text, sizeof why->text, "rank 0 cannot write its files");
-        return status == VIT_OK ? VIT_FAILED : status;
-    }
+    if (spread_any(status != VIT_OK))
+        return status == VIT_OK ? bake_fail(why, VIT_FAILED, "rank 0 cannot write its files") : status;
     status = pipeline_load(p, why);
     if (status == VIT_OK)
         status = exposure_settle(p, why);
@@ -108,11 +106,8 @@ static vit_status run(const cost_options *o, pipeline *p, cost_results *r, vit_t
                                                  : machine_cache_folder(folder, sizeof folder),
                             .memory = o->memory > 0 ? (uint64_t)o->memory << 20 : machine_memory(),
                             .cancel = &cancel};
-    if (spread_any(status != VIT_OK)) {
-        if (status == VIT_OK)
-            snprintf(why->text, sizeof why->text, "another rank has no such device");
-        return status == VIT_OK ? VIT_FAILED : status;
-    }
+    if (spread_any(status != VIT_OK))
+        return status == VIT_OK ? bake_fail(why, VIT_FAILED, "another rank has no such device") : status;
     status = load(o, p, why);
     if (status == VIT_OK && o->converge)
         return converge(o, &in, why);
@@ -148,10 +143,8 @@ int main(int argc, char **argv) {
         status = run(&o, &p, &r, &why);
         progress_end(&line);
     }
-    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout))) {
-        snprintf(why.text, sizeof why.text, "standard output: write failed");
-        status = VIT_FAILED;
-    }
+    if (status == VIT_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        status = bake_fail(&why, VIT_FAILED, "standard output: write failed");
     if (status != VIT_OK && (talks || spread_size() == 1))
         fprintf(stderr, "vitrine-cost: %s\n", why.text);
     sweep_free(&r);

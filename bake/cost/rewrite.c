@@ -116,10 +116,10 @@ static char *read_file(const char *path, vit_text *why) {
     const size_t got = text ? fread(text, 1, MOST_BYTES + 1, f) : 0;
     const bool fine = text && !ferror(f) && got <= MOST_BYTES && !memchr(text, '\0', got);
     if (!fine) {
-        snprintf(why->text, sizeof why->text, "%.300s: %s", path,
-                 !f     ? strerror(errno)
-                 : text ? "is no scene file"
-                        : "out of memory");
+        (void)bake_fail(why, VIT_BAD_INPUT, "%.300s: %s", path,
+                        !f     ? strerror(errno)
+                        : text ? "is no scene file"
+                               : "out of memory");
         free(text);
         text = NULL;
     } else
@@ -154,12 +154,12 @@ vit_status rewrite_file(const char *path, const char *settings, vit_text *why) {
     if (!text)
         return VIT_BAD_INPUT;
     char *changed = rewrite_text(text, settings);
-    vit_status status = VIT_FAILED;
+    vit_status status;
     (void)snprintf(aside, sizeof aside, "%.*s.new-%ld", SCENE_PATH, path, (long)getpid());
     if (changed)
         status = pack_save(aside, changed, strlen(changed), why);
     else
-        snprintf(why->text, sizeof why->text, "%.300s: out of memory, or its quality block does not end", path);
+        status = bake_fail(why, VIT_FAILED, "%.300s: out of memory, or its quality block does not end", path);
     if (status == VIT_OK) {
         status = check(aside, settings, why);
         if (status == VIT_OK && rename(aside, path) != 0) {

@@ -20,7 +20,7 @@
 
 bool sweep_cancelled(const sweep *s, vit_text *why) {
     if (s->in->cancel && *s->in->cancel)
-        snprintf(why->text, sizeof why->text, "interrupted");
+        (void)bake_fail(why, VIT_FAILED, "interrupted");
     return s->in->cancel && *s->in->cancel;
 }
 

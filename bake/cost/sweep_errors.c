@@ -1,7 +1,7 @@
 /* Errors of all settings against the reference. */
 #include "cost/sweep_parts.h"
+#include "common/fail.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* direct + indirect. NULL: out of memory. */
@@ -34,18 +34,18 @@ vit_status sweep_errors(sweep *s, vit_text *why) {
     const size_t values = 3 * s->points;
     double *limited = sum_of(r->direct, r->limited, values), *unlimited = sum_of(r->direct, r->unlimited, values);
     float *picture = calloc(values, sizeof *picture);
-    const bool fine = limited && unlimited && picture;
-    if (fine) {
+    vit_status status = VIT_OK;
+    if (limited && unlimited && picture) {
         compare_all(s, limited, unlimited);
         for (size_t i = 0; i < values; i++)
             picture[i] = (float)limited[i];
         s->out->truncation = metrics_compare(unlimited, picture, NULL, r->width, r->height);
     } else
-        snprintf(why->text, sizeof why->text, "out of memory");
+        status = bake_fail(why, VIT_FAILED, "out of memory");
     free(limited);
     free(unlimited);
     free(picture);
-    return fine ? VIT_OK : VIT_FAILED;
+    return status;
 }
 
 double sweep_smallest_error(const sweep *s) {

@@ -2,8 +2,8 @@
  * foretells times up to a factor (bake/cost/README.md, "Fit"), so what is wrong by more than a setting that fits, or would take
  * far too long, need not be timed, nor need its kernels be compiled. */
 #include "cost/sweep_parts.h"
+#include "common/fail.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #define AT_ONCE 3  /* settings timed beside the default */
@@ -112,10 +112,10 @@ static uint32_t fill_list(const sweep *s, bool *taken, uint32_t list[AT_ONCE + 1
 vit_status sweep_times_to_fit(sweep *s, vit_text *why) {
     bool *taken = calloc(s->out->count, sizeof *taken);
     uint32_t list[AT_ONCE + 1] = {0}, count = 1;
-    vit_status status = taken ? VIT_OK : VIT_FAILED;
+    vit_status status = VIT_OK;
     s->brief = false;
     if (!taken)
-        snprintf(why->text, sizeof why->text, "out of memory");
+        return bake_fail(why, VIT_FAILED, "out of memory");
     for (bool more = true; status == VIT_OK && more; more = count > 1) {
         status = sweep_time_some(s, list, count, why);
         count = status == VIT_OK ? fill_list(s, taken, list) : 1;

@@ -150,9 +150,9 @@ vit_status sweep_time_some(sweep *s, const uint32_t *list, uint32_t count, vit_t
 
 static vit_status time_batches(sweep *s, tracer *traced, vit_text *why) {
     uint32_t *list = calloc(s->out->count, sizeof *list);
-    vit_status status = list ? VIT_OK : VIT_FAILED;
+    vit_status status = VIT_OK;
     if (!list)
-        snprintf(why->text, sizeof why->text, "out of memory");
+        return bake_fail(why, VIT_FAILED, "out of memory");
     for (uint32_t first = 1; status == VIT_OK && (first == 1 || first < settings_timed(s));) {
         const uint32_t end = batch_end(s, first);
         for (uint32_t i = first; i < end; i++)

@@ -38,7 +38,7 @@ static double now_ms(void) {
 
 static bool cancelled(const timing_input *in, vit_text *why) {
     if (in->cancel && *in->cancel)
-        snprintf(why->text, sizeof why->text, "interrupted");
+        (void)bake_fail(why, VIT_FAILED, "interrupted");
     return in->cancel && *in->cancel;
 }
 

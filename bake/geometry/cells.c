@@ -1,5 +1,5 @@
 #include "geometry/cells.h"
-#include <stdio.h>
+#include "common/fail.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,9 +45,8 @@ vit_status cells_divide(const geometry *g, uint32_t triangles, float (*edge)(voi
         const bool many = count > VIT_SIDE_CELL;
         free(edges);
         cells_free(out);
-        snprintf(why->text, sizeof why->text,
-                 many ? "too many triangles for zones and effective areas: at most 8 million" : "out of memory");
-        return many ? VIT_BAD_INPUT : VIT_FAILED;
+        return many ? bake_fail(why, VIT_BAD_INPUT, "too many triangles for zones and effective areas: at most 8 million")
+                    : bake_fail(why, VIT_FAILED, "out of memory");
     }
     for (uint32_t i = 0; i < sides; i++) {
         /* Without `edges` there are no sides, and this is not reached. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */

@@ -1,10 +1,10 @@
 #include "light/area_lights.h"
+#include "common/fail.h"
 #include "common/pi.h"
 #include "common/parallel.h"
 #include "light/photon_rays.h"
 #include "common/sobol.h"
 #include <float.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -218,8 +218,8 @@ vit_status area_lights_find(const photon_scene *s, const vit_camera *cameras, ui
     if (count == 0)
         return VIT_OK;
     opening o = {.e = out, .far = OPEN_FAR * diagonal(s)};
-    const vit_status status = open_up(&o, out, count, threads) ? VIT_OK : VIT_FAILED;
-    if (status == VIT_OK) {
+    vit_status status = VIT_OK;
+    if (open_up(&o, out, count, threads)) {
         for (uint32_t side = 0; side < 2 * s->triangle_count; side++)
             if (shines(s, side))
                 out->side[out->count++] = side;
@@ -229,7 +229,7 @@ vit_status area_lights_find(const photon_scene *s, const vit_camera *cameras, ui
         photon_rays_close(&o.rays);
         sum_up(out);
     } else {
-        snprintf(why->text, sizeof why->text, "area lights: out of memory, or Embree fails");
+        status = bake_fail(why, VIT_FAILED, "area lights: out of memory, or Embree fails");
         area_lights_free(out);
     }
     free(o.lights);
@@ -453,8 +453,8 @@ vit_status area_lights_sets(const area_lights *e, uint32_t samples, vit_light_sa
     class all[CLASSES + 1];
     uint32_t *side = malloc(2 * (size_t)e->count * sizeof *side);
     double *sum = malloc(2 * (size_t)e->count * sizeof *sum);
-    const vit_status status = side && sum ? VIT_OK : VIT_FAILED;
-    if (status == VIT_OK) {
+    vit_status status = VIT_OK;
+    if (side && sum) {
         sort_sides(e, side, sum, all);
         share_points(e, samples, all);
         for (int k = 0; k < CLASSES; out += all[k++].points)
@@ -463,7 +463,7 @@ vit_status area_lights_sets(const area_lights *e, uint32_t samples, vit_light_sa
         if (all[CLASSES].points)
             place_rest(e, all, samples, out);
     } else {
-        snprintf(why->text, sizeof why->text, "area lights: out of memory");
+        status = bake_fail(why, VIT_FAILED, "area lights: out of memory");
     }
     free(side);
     free(sum);

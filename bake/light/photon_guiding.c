@@ -1,8 +1,8 @@
 #include "light/photon_guiding.h"
+#include "common/fail.h"
 #include "common/parallel.h"
 #include "light/photon_emission.h"
 #include "light/photon_specular.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -241,7 +241,7 @@ vit_status photon_guiding_find(const photon_guiding_input *in, photon_guiding *o
                             .guide = calloc(f.sources, sizeof *out->guide),
                             .worth = calloc(f.sources, sizeof *out->worth),
                             .count = f.sources};
-    snprintf(why->text, sizeof why->text, "guides of photons: out of memory, or Embree fails");
+    const vit_status failed = bake_fail(why, VIT_FAILED, "guides of photons: out of memory, or Embree fails");
     bool fine = f.samples && f.sums && f.found && f.count && out->guide && out->worth &&
                 photon_rays_open(&in->scene,
                                  in->threads ? in->threads
@@ -255,7 +255,7 @@ vit_status photon_guiding_find(const photon_guiding_input *in, photon_guiding *o
     drop(&f);
     if (!fine)
         photon_guiding_free(out);
-    return fine ? VIT_OK : VIT_FAILED;
+    return fine ? VIT_OK : failed;
 }
 
 void photon_guiding_free(photon_guiding *g) {

@@ -6,7 +6,6 @@
 #include "light/light_model.h"
 #include "light/photon_emission.h"
 #include "light/photon_specular.h"
-#include <stdio.h>
 #include <stdlib.h>
 
 #define CHUNK 1024u /* paths that a thread takes at a time */
@@ -191,9 +190,9 @@ vit_status photons_bake(const photons_input *in, unsigned threads, vit_photon **
     const size_t slots = (size_t)b.paths * (in->bounces - 1);
     b.slots = slots <= SIZE_MAX / sizeof *b.slots ? calloc(slots, sizeof *b.slots) : NULL;
     if (!b.slots || !photon_rays_open(&s, threads, &b.rays)) {
-        snprintf(why->text, sizeof why->text, "photons: %s", b.slots ? "Embree fails" : "out of memory");
+        const bool room = b.slots != NULL;
         free(b.slots);
-        return VIT_FAILED;
+        return bake_fail(why, VIT_FAILED, "photons: %s", room ? "Embree fails" : "out of memory");
     }
     const parallel_work work = {.run = trace_chunk,
                                 .done = report,

@@ -13,7 +13,6 @@
 #include <math.h>
 #include <stb/stb_image.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -269,10 +268,10 @@ vit_status sky_load(const char *file, double scale, double rotate, environment *
     const char *wrong = bytes ? decode(bytes, size, scale, &width, &height, &rgb) : file_trouble(file);
     if (!bytes && !wrong)
         wrong = "is empty or cannot be read";
-    vit_status status = VIT_BAD_INPUT;
+    vit_status status;
     *out = (environment){0};
     if (wrong)
-        snprintf(why->text, sizeof why->text, "sky: '%.300s' %s", file, wrong);
+        status = bake_fail(why, VIT_BAD_INPUT, "sky: '%.300s' %s", file, wrong);
     else
         status = sky_from_texels(rgb, width, height, rotate, out, why);
     free(rgb); /* stb's memory is malloc's */

@@ -3,7 +3,6 @@
 #include "reference/caustics.h"
 #include "common/parallel.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -199,8 +198,7 @@ vit_status spots_render(const spots_input *in, spot *spots, uint32_t count, uint
                  .frame_of = calloc(count + 1u, sizeof *t.frame_of),
                  .views = calloc(count + 1u, sizeof *t.views),
                  .sums = calloc(count + 1u, sizeof *t.sums)};
-    vit_status status = VIT_FAILED;
-    snprintf(why->text, sizeof why->text, "check: out of memory, or Embree fails");
+    vit_status status = bake_fail(why, VIT_FAILED, "check: out of memory, or Embree fails");
     if (t.frames && t.frame_of && t.views && t.sums && paths_open(&input, parallel_threads(in->threads, 1), &t.base)) {
         if (open_frames(&t))
             status = trace(&t, why);

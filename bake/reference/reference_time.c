@@ -1,9 +1,9 @@
 #define _POSIX_C_SOURCE 200809L
 #include "reference/caustics.h"
+#include "common/fail.h"
 #include "common/parallel.h"
 #include "reference/metrics.h"
 #include "reference/paths.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -83,7 +83,7 @@ vit_status reference_timer_open(const reference_input *in, const reference *trut
                                .total = calloc(values, sizeof(double))};
     }
     if (!t || !t->image || !t->total || !paths_open(in, t->threads, &t->scene)) {
-        snprintf(why->text, sizeof why->text, "reference: %s", t && t->image && t->total ? "Embree fails" : "out of memory");
+        (void)bake_fail(why, VIT_FAILED, "reference: %s", t && t->image && t->total ? "Embree fails" : "out of memory");
         reference_timer_close(t);
         return VIT_FAILED;
     }
@@ -113,12 +113,10 @@ vit_status reference_time(const reference_input *in, const reference *truth, uin
                           vit_text *why) {
     reference_timer *t;
     reference_timing *all = calloc(frames ? frames : 1, sizeof *all);
-    vit_status status = VIT_FAILED;
     *out = (reference_timing){0};
     if (!all)
-        snprintf(why->text, sizeof why->text, "reference: out of memory");
-    else
-        status = reference_timer_open(in, truth, &t, why);
+        return bake_fail(why, VIT_FAILED, "reference: out of memory");
+    const vit_status status = reference_timer_open(in, truth, &t, why);
     if (status == VIT_OK && frames > 0) {
         double nmse = 0, relmse = 0;
         for (uint32_t i = 0; i < frames; i++) {

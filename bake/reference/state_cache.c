@@ -168,14 +168,13 @@ vit_status state_save(const reference_state *s, const char *folder, vit_text *wh
         .key = s->key, .rays = s->rays, .seconds = s->seconds, .width = s->width, .height = s->height, .rounds = s->rounds};
     char path[ROOM];
     unsigned char *file = malloc(sizeof h + size);
-    vit_status status = VIT_FAILED;
+    vit_status status;
     memcpy(h.magic, magic, sizeof magic);
     h.hash = hash_file(h, s->sums, size);
     if (!file || !file_name(s, folder, path))
-        snprintf(why->text, sizeof why->text, "reference: %s",
-                 file ? "the cache's folder has too long a name" : "out of memory");
+        status = bake_fail(why, VIT_FAILED, "reference: %s", file ? "the cache's folder has too long a name" : "out of memory");
     else if (is_foreign(path, sizeof h + size))
-        snprintf(why->text, sizeof why->text, "%.400s: is there and is no reference: it is not written over", path);
+        status = bake_fail(why, VIT_FAILED, "%.400s: is there and is no reference: it is not written over", path);
     else {
         memcpy(file, &h, sizeof h);
         memcpy(file + sizeof h, s->sums, size);

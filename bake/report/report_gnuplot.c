@@ -1,25 +1,16 @@
 /* report_gnuplot.c: gnuplot reads its script from a file without a name and draws into another: nothing to clean up. */
 #include "report/report_parts.h"
+#include "common/fail.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <spawn.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 extern char **environ;
-
-static vit_status fail(vit_text *why, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static vit_status fail(vit_text *why, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(why->text, sizeof why->text, format, arguments);
-    va_end(arguments);
-    return VIT_FAILED;
-}
 
 typedef struct gnuplot_files {
     FILE *script, *drawing, *errors;
@@ -148,7 +139,7 @@ static vit_status fail_script(vit_text *why, const report_drawing *d, int code, 
         if (*line)
             last = line;
     }
-    return fail(why, "gnuplot: plot '%s': exit code %d: %.300s", d->id, code, last);
+    return bake_fail(why, VIT_FAILED, "gnuplot: plot '%s': exit code %d: %.300s", d->id, code, last);
 }
 
 vit_status report_gnuplot(const report_drawing *d, const char *script, FILE *to, vit_text *why) {
@@ -156,18 +147,19 @@ vit_status report_gnuplot(const report_drawing *d, const char *script, FILE *to,
     int code = 0;
     if (!open_files(&files, d, script)) {
         close_files(&files);
-        return fail(why, "gnuplot: plot '%s': cannot write a temporary file: %s", d->id, strerror(errno));
+        return bake_fail(why, VIT_FAILED, "gnuplot: plot '%s': cannot write a temporary file: %s", d->id, strerror(errno));
     }
     const int error = run(&files, &code);
     if (error != 0) {
         close_files(&files);
-        return error == ENOENT ? fail(why, "gnuplot: not found: the report's plots need it (Debian: gnuplot-nox)")
-                               : fail(why, "gnuplot: cannot run it: %s", strerror(error));
+        return error == ENOENT
+                   ? bake_fail(why, VIT_FAILED, "gnuplot: not found: the report's plots need it (Debian: gnuplot-nox)")
+                   : bake_fail(why, VIT_FAILED, "gnuplot: cannot run it: %s", strerror(error));
     }
     char *svg = slurp(files.drawing), *errors = slurp(files.errors);
     vit_status status = VIT_OK;
     if (!svg || !errors)
-        status = fail(why, "gnuplot: plot '%s': out of memory", d->id);
+        status = bake_fail(why, VIT_FAILED, "gnuplot: plot '%s': out of memory", d->id);
     else if (code != 0 || !copy_drawing(svg, d, to))
         status = fail_script(why, d, code, errors);
     free(svg);

@@ -1,5 +1,6 @@
 /* report_stack.c: a bar a setting, in the sweep's order, stacked from the milliseconds of its passes. */
 #include "report/report_parts.h"
+#include "common/fail.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -154,11 +155,11 @@ vit_status report_plot_stack(const cost_results *r, FILE *to, vit_text *why) {
     FILE *text = open_memstream(&script, &size);
     if (text)
         print_script(&s, r, d.height, text);
-    vit_status status = VIT_FAILED;
+    vit_status status;
     if (text && fclose(text) == 0)
         status = report_gnuplot(&d, script, to, why);
     else
-        (void)snprintf(why->text, sizeof why->text, "report: out of memory for a plot");
+        status = bake_fail(why, VIT_FAILED, "report: out of memory for a plot");
     free(script);
     return status;
 }

@@ -3,7 +3,6 @@
 #include "scene/scene_reader.h"
 #include "scene/scene_text.h"
 #include "scene/setting_rows.h"
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -185,15 +184,12 @@ static bool parse(const config_place *at, const char *missing, config_t *config)
     /* In [ ] all elements have one type, which nobody expects. */
     const bool mixed = text && strstr(text, "mismatched element type");
     const bool lost = missing[0] && text && strstr(text, "include");
-    (void)snprintf(at->why->text, sizeof at->why->text, "%.200s:%d: %s%s%.100s%s", file ? file : at->path,
-                   config_error_line(config), text ? text : "cannot be read",
-                   mixed  ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)"
-                   : lost ? ": '"
-                          : "",
-                   lost ? missing : "", lost ? "' is not there" : "");
-    for (char *c = at->why->text; *c; c++)
-        if (iscntrl((unsigned char)*c))
-            *c = '?';
+    (void)bake_fail_plain(at->why, VIT_BAD_INPUT, "%.200s:%d: %s%s%.100s%s", file ? file : at->path, config_error_line(config),
+                          text ? text : "cannot be read",
+                          mixed  ? ": write [0.0, 1.0, 0.5] or (0, 1, 0.5)"
+                          : lost ? ": '"
+                                 : "",
+                          lost ? missing : "", lost ? "' is not there" : "");
     return false;
 }
 

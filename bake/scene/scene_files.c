@@ -1,4 +1,5 @@
 #include "scene/scene_files.h"
+#include "common/fail.h"
 #include "common/file_trouble.h"
 #include "scene/scene_text.h"
 #include <stdio.h>
@@ -50,10 +51,10 @@ static bool check_includes(const config_place *at, const char *path, FILE *file,
         const int used = snprintf(full, sizeof full, "%s%s", at->folder, name);
         const bool below = name[0] && name[0] != '/' && used > 0 && used < SCENE_PATH;
         if (!below || depth >= MAX_DEPTH || all->left == 0) {
-            (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: %s", path, number,
-                           !below               ? "@include takes a path below the scene's folder"
-                           : depth >= MAX_DEPTH ? "@include goes deeper than 10 files"
-                                                : "more than 256 files are included");
+            (void)bake_fail(at->why, VIT_BAD_INPUT, "%.300s:%u: %s", path, number,
+                            !below               ? "@include takes a path below the scene's folder"
+                            : depth >= MAX_DEPTH ? "@include goes deeper than 10 files"
+                                                 : "more than 256 files are included");
             fine = false;
         } else if (access(full, F_OK) == 0) { /* a missing one is libconfig's to report, unless a comment holds it */
             --all->left;

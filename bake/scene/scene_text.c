@@ -1,10 +1,10 @@
 /* libconfig 1.5 takes 010 for 10 and 4294967298 for 2; 1.7 takes 010 for 8, and the other for a number of 64 bits; the one does
  * not know a comma behind the last element of a list, the other does. A scene file means one thing. */
 #include "scene/scene_text.h"
+#include "common/fail.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,8 +66,7 @@ static const char *wrong_number(const char *word, size_t length) {
 }
 
 static bool refuse(const config_place *at, const char *path, unsigned line, const char *word, size_t length, const char *what) {
-    (void)snprintf(at->why->text, sizeof at->why->text, "%.300s:%u: '%.*s' %s", path, line, length < 40 ? (int)length : 40,
-                   word, what);
+    (void)bake_fail(at->why, VIT_BAD_INPUT, "%.300s:%u: '%.*s' %s", path, line, length < 40 ? (int)length : 40, word, what);
     return false;
 }
 

@@ -1,4 +1,5 @@
 #include "scene/setting_rows.h"
+#include "common/fail.h"
 #include "vitrine_pack.h"
 #include <stddef.h>
 #include <stdio.h>
@@ -24,7 +25,7 @@ bool settings_agree(const scene_quality *q, vit_text *why) {
     else if (q->light_zones && !q->zones)
         fault = "'light_zones' needs zones = true";
     if (fault)
-        (void)snprintf(why->text, sizeof why->text, "%s", fault);
+        (void)bake_fail(why, VIT_BAD_INPUT, "%s", fault);
     return !fault;
 }
 

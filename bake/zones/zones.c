@@ -1,8 +1,8 @@
 #include "zones/zones.h"
+#include "common/fail.h"
 #include "light/photon_specular.h"
 #include "zones/parts.h"
 #include <float.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -329,7 +329,7 @@ static void report(const zones *z, double done) {
 }
 
 static vit_status fill(zones *z, vit_text *why) {
-    snprintf(why->text, sizeof why->text, "zones: out of memory");
+    const vit_status failed = bake_fail(why, VIT_FAILED, "zones: out of memory"); /* where no step says more */
     const vit_status status = find_seen(z, why);
     report(z, 0.05);
     if (status != VIT_OK)
@@ -342,7 +342,7 @@ static vit_status fill(zones *z, vit_text *why) {
     report(z, 0.85);
     fine = fine && zones_areas(z);
     report(z, 1.0);
-    return fine ? VIT_OK : VIT_FAILED;
+    return fine ? VIT_OK : failed;
 }
 
 vit_status zones_bake(const zones_input *in, cells *out, zones_found *found, vit_text *why) {
@@ -363,11 +363,11 @@ vit_status zones_bake(const zones_input *in, cells *out, zones_found *found, vit
                .found = found};
     memset(out, 0, sizeof *out);
     *found = (zones_found){0};
-    vit_status status = VIT_FAILED;
+    vit_status status;
     if (photon_rays_open(&z.scene, in->threads, &z.rays))
         status = fill(&z, why);
     else
-        snprintf(why->text, sizeof why->text, "zones: Embree fails");
+        status = bake_fail(why, VIT_FAILED, "zones: Embree fails");
     found->receivers = z.receiver_count;
     found->patches = z.patch_count;
     release(&z);
