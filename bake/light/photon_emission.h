@@ -14,7 +14,7 @@ typedef struct photons_light {
     uint32_t paths;          /* 1..PHOTONS_MAX_PATHS; 0: none */
     const area_lights *area; /* not NULL: the area lights, and `light` does not count */
     const environment *sky;  /* not NULL: the sky; of `light` position and spot_scale count: middle and radius, m, of a sphere
-                        round the  scene */
+                        round the scene */
     const struct guiding_tree *guide; /* where its paths start and how they first reflect (guiding_tree.h); NULL: evenly */
     vec3 around; /* of the sky, guided: the place that positions across its directions are counted from, so that a window is in
                     one place from all of them */

@@ -25,11 +25,11 @@ static vit_status out_of_memory(vit_text *why) {
     return bake_fail(why, VIT_FAILED, "out of memory");
 }
 
-static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool dark_sides,
+static vit_status run_begin(run *r, const bounds_input *in, const pack_sections *sections, vit_format format, bool record_reach,
                             vit_text *why) {
     vit_open_info info = {.device = in->device, .threads = in->threads, .format = format};
-    info.record_reach = dark_sides;
-    info.count_work = dark_sides && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
+    info.record_reach = record_reach;
+    info.count_work = record_reach && (in->scene->effects & VIT_BIT(CUTOUT)) != 0;
     memset(r, 0, sizeof *r);
     vit_status status = pack_assemble(sections, &r->pack, &info.pack_size, why);
     if (status != VIT_OK)

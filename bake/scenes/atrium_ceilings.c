@@ -12,9 +12,9 @@ typedef struct web {
 
 static void web_point(const void *user, double s, double t, vertex *out) {
     const web *w = user;
-    double dark_sides = PI / 2.0 * (2.0 * s - 1.0);
+    double angle = PI / 2.0 * (2.0 * s - 1.0);
     /* Between the two groins x runs from -t to t of the half width. */
-    double x = t * sine(dark_sides), rise = 1.0 - x * x;
+    double x = t * sine(angle), rise = 1.0 - x * x;
     out->p = v3_of(w->across * x, SPRING + RISE * sqrt(rise > 0.0 ? rise : 0.0), w->along * t);
     out->u = w->across * x / 3.0;
     out->v = w->along * t / 3.0;

@@ -83,8 +83,8 @@ bool grid_make(grid *g, const vec3 *at, size_t stride, uint32_t count, float edg
 void grid_free(grid *g);
 /* Runs f for the items in the boxes that touch the cube of `reach` about p: one by one, or as stretches of `item`, a row of
  * boxes each. */
-void grid_near(const grid *g, vec3 p, float dark_sides, void (*f)(void *user, uint32_t item), void *user);
-void grid_rows(const grid *g, vec3 p, float dark_sides, void (*f)(void *user, uint32_t begin, uint32_t end), void *user);
+void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t item), void *user);
+void grid_rows(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t begin, uint32_t end), void *user);
 /* Lets every box begin at a multiple of `width` items; the gaps are VIT_NONE. *slots: items then, 0 if there are none. False:
  * out of memory. */
 bool grid_align(grid *g, uint32_t width, uint32_t *slots);

@@ -59,14 +59,14 @@ static int box_number(float x, float inv, int n) {
     return b < 0.0f ? 0 : b < (float)n ? (int)b : n - 1;
 }
 
-void grid_rows(const grid *g, vec3 p, float dark_sides, void (*f)(void *user, uint32_t begin, uint32_t end), void *user) {
+void grid_rows(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t begin, uint32_t end), void *user) {
     const vec3 q = vec3_sub(p, g->lo);
-    const int x1 = box_number(q.x + dark_sides, g->inv, g->nx), y1 = box_number(q.y + dark_sides, g->inv, g->ny),
-              z1 = box_number(q.z + dark_sides, g->inv, g->nz);
-    for (int z = box_number(q.z - dark_sides, g->inv, g->nz); z <= z1; z++)
-        for (int y = box_number(q.y - dark_sides, g->inv, g->ny); y <= y1; y++) {
+    const int x1 = box_number(q.x + reach, g->inv, g->nx), y1 = box_number(q.y + reach, g->inv, g->ny),
+              z1 = box_number(q.z + reach, g->inv, g->nz);
+    for (int z = box_number(q.z - reach, g->inv, g->nz); z <= z1; z++)
+        for (int y = box_number(q.y - reach, g->inv, g->ny); y <= y1; y++) {
             const size_t row = ((size_t)z * (size_t)g->ny + (size_t)y) * (size_t)g->nx;
-            f(user, g->start[row + (size_t)box_number(q.x - dark_sides, g->inv, g->nx)], g->start[row + (size_t)x1 + 1]);
+            f(user, g->start[row + (size_t)box_number(q.x - reach, g->inv, g->nx)], g->start[row + (size_t)x1 + 1]);
         }
 }
 
@@ -82,9 +82,9 @@ static void each_item(void *user, uint32_t begin, uint32_t end) {
         e->f(e->user, e->g->item[i]);
 }
 
-void grid_near(const grid *g, vec3 p, float dark_sides, void (*f)(void *user, uint32_t item), void *user) {
+void grid_near(const grid *g, vec3 p, float reach, void (*f)(void *user, uint32_t item), void *user) {
     each e = {g, f, user};
-    grid_rows(g, p, dark_sides, each_item, &e);
+    grid_rows(g, p, reach, each_item, &e);
 }
 
 bool grid_align(grid *g, uint32_t width, uint32_t *slots) {

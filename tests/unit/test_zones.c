@@ -1,5 +1,5 @@
 /* Zones and effective areas, in rooms whose answers can be written down: a plane, its edge, a convex and an inner edge, a box
- * on a floor, two rooms on either side of a thin wall. Light and camera dark_sides everything, so that every cell is baked.
+ * on a floor, two rooms on either side of a thin wall. Light and camera reach everything, so that every cell is baked.
  *
  * The kernel is 1 - d^2 / r^2 over a sphere of radius r. In units of its integral over a plane, pi r^2 / 2: the part of a plane
  * on the near side of a line at distance h r is half_plane(h), and half a plane that stands at distance h r across it is (1 -
