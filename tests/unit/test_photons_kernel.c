@@ -1,6 +1,7 @@
 /* Photons baked with Embree against the same photons traced by kernels/photons.cl: on rooms with everything in them that either
- * side treats, each slot must hold the same photon. Hits may differ by rounding where a ray meets an edge, and the path from
- * there on with them, so a few may differ. */
+ * side treats, each slot must hold the same photon, to the bit: what a photon does stands in both languages, and Embree only
+ * proposes what a ray may hit (bake/geometry/triangle_rays.c). Likeness is counted too, since it says by how much two codes
+ * part. */
 #include "photon_room.h"
 #include "kernel_lab.h"
 #include "zones/zones.h"
@@ -161,9 +162,9 @@ static likeness compare_room(room *r, uint64_t effects) {
     if (r->in.cells)
         zones_assign(&c, baked, count);
     const likeness l = compare_photons(r, baked, count, traced, paths);
-    assert_true(l.alike >= 0.99 * l.stored && l.alike >= 0.99 * count);
-    assert_true(l.same >= 0.9 * l.stored);
-    assert_true(fabs(l.watts / l.expected - 1.0) < 2e-3);
+    assert_int_equal(count, l.stored);
+    assert_int_equal(l.alike, l.stored);
+    assert_int_equal(l.same, l.stored);
     assert_int_equal(l.zones, r->in.cells ? ~0u : 0u);
     cells_free(&c);
     free(traced);
