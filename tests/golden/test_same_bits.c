@@ -7,6 +7,7 @@
  * every pass, so that a difference that a later pass hides shows too. Threads and devices are settings of a whole process, so
  * the real player runs as a child. */
 #include "test_packs.h"
+#include "vitrine.h"
 
 enum { AT_ONCE = 2 };          /* most of a run's time is PoCL's compiler, which has one thread */
 static tool_run runs[AT_ONCE]; /* too large for a stack */
@@ -225,11 +226,17 @@ static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
         }
 }
 
-static void views_of_the_methods_insides_are_the_same_at_every_width(void **state) {
+static void every_view_is_the_same_at_every_width(void **state) {
     (void)state;
-    static const char *const views[] = {"clusters", "photons", "heat"}; /* the others do no more than `final` */
-    static const variant lanes[] = {
-        {"POCL_MAX_PTHREAD_COUNT=1", ""}, {"", "--device host --lanes 1"}, {"", "--device host --lanes 8"}};
+    static const char *const views[] = {
+#define X(name, light, meaning) #name,
+        VIT_VIEWS(X)
+#undef X
+    };
+    static const variant lanes[] = {{"POCL_MAX_PTHREAD_COUNT=1", ""},
+                                    {"", "--device host --lanes 1"},
+                                    {"", "--device host --lanes 8"},
+                                    {"", "--device host --lanes 16"}};
     for (size_t i = 0; i < COUNT(views); i++) {
         char what[64];
         (void)snprintf(what, sizeof what, "--hash --view %s", views[i]);
@@ -266,7 +273,7 @@ int main(void) {
         cmocka_unit_test(frames_of_a_path_differ_from_each_other),
         cmocka_unit_test(every_buffer_is_the_same_after_every_pass),
         cmocka_unit_test(every_format_and_odd_size_is_the_same_at_every_width),
-        cmocka_unit_test(views_of_the_methods_insides_are_the_same_at_every_width),
+        cmocka_unit_test(every_view_is_the_same_at_every_width),
     };
     return cmocka_run_group_tests_name("same bits", tests, NULL, NULL);
 }
