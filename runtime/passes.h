@@ -42,7 +42,8 @@ typedef struct vit_launch {
 #define VIT_POSITION(l) ((l)->effects & ON(SMALL_SAMPLES) ? 6u : 12u)
 
 /* X(name, when: any of these effects, or ALWAYS; section that fills it or NONE; bytes, an expression over scene s and limits
- * l). */
+ * l). hit_triangle and hit_distance are of the end of the view ray's chain, where there are mirrors or glass: the distance is
+ * the last ray's, that of the whole way is in `rays` (chain_length() of kernels/specular.clh). */
 #define VIT_BUFFERS(X)                                                                                                         \
     X(scene, ALWAYS, META, sizeof(vit_scene))                                                                                  \
     X(cameras, ALWAYS, CAMS, s->frames * sizeof(vit_camera))                                                                   \
