@@ -2,8 +2,8 @@
  *
  * Strategy: the compiler is the judge. The header is compiled alone in both languages with every warning an error; a small
  * program of a user's is built with the header, the archive and OpenCL alone, and plays a pack. What a folder may include is
- * read from the sources: each #include "..." is resolved as the compiler does it and must lie where README.md,
- * "Folders", allows. */
+ * read from the sources: each #include "..." is resolved as the compiler does it and must lie where the table of
+ * folders on the repository's first page allows. */
 #include "test_packs.h"
 
 #include <dirent.h>

@@ -1,6 +1,6 @@
 /* The one table of quality settings. Stated: each row's default is a value that it allows; what an option takes is what the
- * scene file takes; the ends of a range are allowed and what lies beyond is not; every value to try can be tried; README.md has
- * the table as it is. */
+ * scene file takes; the ends of a range are allowed and what lies beyond is not; every value to try can be tried;
+ * bake/README.md has the table as it is. */
 #include "scene/setting_rows.h"
 #include "scene/scene.h"
 #include <float.h>
