@@ -29,7 +29,7 @@ typedef enum vit_format {
     X(photons, VIT_SHOWS_DIRECT + VIT_SHOWS_INDIRECT, "photons as dots over the picture")                                      \
     X(heat, 0, "photons of each pixel's cluster as a heat map")                                                                \
     X(normals, 0, "shading normals as colours")                                                                                \
-    X(depth, 0, "view depth, from bright to dark over what the path sees, in even steps of its logarithm")                     \
+    X(depth, 0, "length of the view ray, from bright to dark over what the path sees, in even steps of its logarithm")         \
     X(albedo, 0, "diffuse reflectance")
 
 typedef enum vit_view {

@@ -108,8 +108,9 @@ static inline void box_depths(global const vit_scene *scene, global const vit_ca
     *near = vit_min(vit_max(*near, vit_max(scene->slice_near, *far * 0x1p-7f)), *far * 0.5f);
 }
 
-/* View depth as brightness, in even steps of its logarithm: 1 for the nearest, 1/16 for the farthest, so that it is not taken
- * for nothing. The range is what the path sees, by the depth slices in use; without them, the scene's box. */
+/* The length of the view ray, all of its chain, as brightness, in even steps of its logarithm: 1 for the nearest, 1/16 for the
+ * farthest, so that it is not taken for nothing. The range is what the path sees, by the depth slices in use; without them, the
+ * scene's box. Both are of depth along the view axis, a little less than the ray's length off the middle. */
 static inline lf depth_shade(global const vit_scene *scene, global const vit_camera *camera, global const vit_bvh_node *bvh,
                              lf depth) {
     lf least = L_F(scene->slice_near), octaves = L_F(vit_div((float)scene->slice_count, scene->slice_scale)), skipped = L_F(0);

@@ -1,7 +1,7 @@
 /* kernel_math.h: what kernels/lanes.clh, random.clh and ray.clh compute, as plain C: the same operations in the same order
  * (fmaf where they fuse), so that photons baked here and photons traced while playing are the same photons. */
-#ifndef VIT_BAKE_PHOTON_MATH_H
-#define VIT_BAKE_PHOTON_MATH_H
+#ifndef VIT_BAKE_KERNEL_MATH_H
+#define VIT_BAKE_KERNEL_MATH_H
 
 #include <math.h>
 #include <stdint.h>
