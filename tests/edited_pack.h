@@ -17,7 +17,7 @@ static inline void pack_open_edited(open_pack *p, const char *name, pack_edit *e
         pack_open(p, name, how);
         return;
     }
-    void *old = test_packs_load(test_pack(name), &size), *bytes = NULL;
+    void *old = read_file(test_pack(name), &size), *bytes = NULL;
     pack_sections sections = pack_sections_of(old);
     vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
     const size_t cameras_size = s.frames * sizeof(vit_camera), lights_size = (size_t)s.frames * s.lights * sizeof(vit_light);

@@ -1,33 +1,14 @@
-/* Mesh files made here, and what must hold of what is imported from them. A program defines FOLDER, where its files are. */
+/* Mesh files made here, and what must hold of what is imported from them. A program defines FOLDER, where its files are,
+ * before it includes this. */
 #ifndef VIT_TESTS_IMPORT_LAB_H
 #define VIT_TESTS_IMPORT_LAB_H
 
 #include "import/model.h"
+#include "test_folder.h"
 #include "vitrine_pack.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
-
-#define FILE_OF(name) FOLDER "/" name
 
 /* ---- files made here ---- */
-
-static inline void put_bytes(const char *path, const void *bytes, size_t size) {
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-}
-
-static inline void put(const char *path, const char *text) {
-    put_bytes(path, text, strlen(text));
-}
 
 /* A TGA of two by two texels: red green over blue white, the last with alpha `alpha`. Returns its size. */
 static inline size_t make_image(uint8_t out[34], uint8_t alpha) {
@@ -99,20 +80,43 @@ static inline void put_gltf(const char *attributes, const char *rest) {
 
 /* ---- importing ---- */
 
-static char last_warning[1024];
+static char last_warning[1024], warnings[4096]; /* the last one alone; all, a line each */
 
 static inline void remember(void *user, const char *line) {
+    const size_t used = strlen(warnings);
     (void)user;
     assert_null(strchr(line, '\n'));
     (void)snprintf(last_warning, sizeof last_warning, "%s", line);
+    (void)snprintf(warnings + used, sizeof warnings - used, "%s\n", line);
+}
+
+static inline void forget_warnings(void) {
+    last_warning[0] = warnings[0] = '\0';
 }
 
 static inline vit_status import_file(const char *path, bool strict, model *m, vit_text *why) {
     scene s;
     *why = (vit_text){{0}};
-    last_warning[0] = '\0';
+    forget_warnings();
     assert_int_equal(scene_for_mesh(path, &s, why), VIT_OK);
     const vit_status status = model_import(&s, strict, remember, NULL, m, why);
+    scene_free(&s);
+    return status;
+}
+
+/* The mesh file of FOLDER in a scene of which `rest` is the rest. */
+static inline vit_status import_in_scene(const char *mesh, const char *rest, model *m, vit_text *why) {
+    char text[2048];
+    scene s;
+    (void)snprintf(text, sizeof text,
+                   "meshes = ( { file = \"%s\"; } ); camera: { keys = ( { eye = (0, 1, 3); target = (0, 1, 0); } ); };\n%s\n",
+                   mesh, rest);
+    put(FILE_OF("m.cfg"), text);
+    *why = (vit_text){{0}};
+    forget_warnings();
+    if (scene_read(FILE_OF("m.cfg"), &s, why) != VIT_OK)
+        fail_msg("%s", why->text);
+    const vit_status status = model_import(&s, false, remember, NULL, m, why);
     scene_free(&s);
     return status;
 }
@@ -196,12 +200,6 @@ static inline void normal_at(const model *m, float x, float y, float z, float nx
 static inline void put_obj(const char *mtl) {
     put(FILE_OF("quad.mtl"), mtl);
     put(FILE_OF("quad.obj"), "mtllib quad.mtl\n" OBJ_QUAD "usemtl m\n" OBJ_FACES);
-}
-
-static inline int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 #define T(name) cmocka_unit_test(name)

@@ -39,7 +39,7 @@ static inline void pack_open_bytes(open_pack *p, void *bytes, size_t size, vit_o
 
 static inline void pack_open(open_pack *p, const char *name, vit_open_info how) {
     size_t size;
-    void *bytes = test_packs_load(test_pack(name), &size);
+    void *bytes = read_file(test_pack(name), &size);
     pack_open_bytes(p, bytes, size, how);
 }
 

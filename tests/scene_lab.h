@@ -4,32 +4,25 @@
 #ifndef VIT_TESTS_SCENE_LAB_H
 #define VIT_TESTS_SCENE_LAB_H
 
+#include "test_folder.h"
 #include "vitrine.h"
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
-#include <cmocka.h>
 
 #define SCENE_LAB_FILES 16
 #define SCENE_LAB_WORDS 40
 #define SCENE_LAB_SECONDS 7200 /* a program that hangs is killed */
 
 typedef struct scene_lab {
-    char folder[64];
+    char folder[TEST_FOLDER];
     char files[SCENE_LAB_FILES][96]; /* what scene_lab_close() removes */
     size_t file_count;
 } scene_lab;
 
 static inline void scene_lab_open(scene_lab *l) {
-    *l = (scene_lab){.folder = "/tmp/vitrine-test-XXXXXX"};
-    assert_non_null(mkdtemp(l->folder));
+    *l = (scene_lab){.file_count = 0};
+    folder_make_temporary(l->folder);
 }
 
 static inline void scene_lab_close(scene_lab *l) {
@@ -54,7 +47,7 @@ static inline int scene_lab_tear_down(void **state) {
 /* Path of a file in the folder. */
 static inline const char *scene_lab_path(scene_lab *l, const char *name) {
     char path[96];
-    (void)snprintf(path, sizeof path, "%s/%s", l->folder, name);
+    path_join(path, sizeof path, l->folder, name);
     for (size_t i = 0; i < l->file_count; i++)
         if (strcmp(l->files[i], path) == 0)
             return l->files[i];
@@ -106,12 +99,8 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
     assert_int_equal(waitpid(child, &status, 0), child);
     if (WIFEXITED(status) && WEXITSTATUS(status) == VIT_OK)
         return;
-    char text[2048] = "";
-    FILE *f = fopen(out, "r");
-    if (f != NULL) {
-        text[fread(text, 1, sizeof text - 1, f)] = '\0';
-        (void)fclose(f);
-    }
+    char text[2048];
+    read_into(out, text, sizeof text);
     fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
 }
 
@@ -127,10 +116,7 @@ static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *o
 /* Did the program that ran last say this? */
 static inline bool scene_lab_said(scene_lab *l, const char *text) {
     char said[16384];
-    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
-    assert_non_null(f);
-    said[fread(said, 1, sizeof said - 1, f)] = '\0';
-    (void)fclose(f);
+    read_into(scene_lab_path(l, "out.txt"), said, sizeof said);
     return strstr(said, text) != NULL;
 }
 
@@ -140,13 +126,11 @@ static inline void scene_lab_play(scene_lab *l, const char *view, float *pixels,
     const char *pack = scene_lab_path(l, "scene.vit"), *raw = scene_lab_path(l, "frames.raw");
     (void)snprintf(line, sizeof line, "%s --view %s --format rgba32f --out raw:%s --quiet --device host", pack, view, raw);
     scene_lab_run(l, "vitrine-play", line);
-    struct stat size;
-    assert_int_equal(stat(raw, &size), 0);
-    assert_int_equal((size_t)size.st_size, floats * sizeof *pixels);
-    FILE *f = fopen(raw, "rb");
-    assert_non_null(f);
-    assert_int_equal(fread(pixels, sizeof *pixels, floats, f), floats);
-    (void)fclose(f);
+    size_t size;
+    void *bytes = read_file(raw, &size);
+    assert_int_equal(size, floats * sizeof *pixels);
+    memcpy(pixels, bytes, size);
+    free(bytes);
 }
 
 /* Both, for the indirect light. */

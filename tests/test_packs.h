@@ -2,6 +2,7 @@
 #ifndef VIT_TESTS_TEST_PACKS_H
 #define VIT_TESTS_TEST_PACKS_H
 
+#include "test_folder.h"
 #include "tool_run.h"
 
 #include <fcntl.h>
@@ -144,20 +145,13 @@ static const struct {
 };
 enum { TEST_PACK_COUNT = sizeof test_packs / sizeof test_packs[0] };
 
-static inline void test_packs_write(const char *path, const void *bytes, size_t size) {
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, size, f), size);
-    assert_int_equal(fclose(f), 0);
-}
-
 /* Writes a scene's file where it is missing or of another size: its time says when it last changed. */
 static inline void test_packs_put(const char *name, const void *bytes, size_t size) {
     char path[256];
     struct stat there;
     (void)snprintf(path, sizeof path, TEST_PACKS "/%s", name);
     if (stat(path, &there) != 0 || (size_t)there.st_size != size)
-        test_packs_write(path, bytes, size);
+        put_bytes(path, bytes, size);
 }
 
 static inline int test_packs_later(const struct stat *a, const struct stat *b) {
@@ -168,7 +162,7 @@ static inline int test_packs_later(const struct stat *a, const struct stat *b) {
 /* Tests run side by side: only one at a time makes what belongs to `name`. Returns what ends it with close(). */
 static inline int test_packs_lock(const char *name) {
     char path[256];
-    (void)mkdir(TEST_PACKS, 0777);
+    folder_make(TEST_PACKS);
     (void)snprintf(path, sizeof path, TEST_PACKS "/%s.lock", name);
     const int file = open(path, O_RDWR | O_CREAT, 0666);
     assert_true(file >= 0);
@@ -220,22 +214,6 @@ static inline const char *test_pack(const char *name) {
     }
     (void)close(lock);
     return path;
-}
-
-/* A whole file in memory, aligned as vit_open_info.pack wants it; free() it. */
-static inline void *test_packs_load(const char *path, size_t *size) {
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    const long length = ftell(f);
-    assert_true(length > 0);
-    rewind(f);
-    void *bytes = aligned_alloc(64, ((size_t)length + 63) / 64 * 64);
-    assert_non_null(bytes);
-    assert_int_equal(fread(bytes, 1, (size_t)length, f), length);
-    (void)fclose(f);
-    *size = (size_t)length;
-    return bytes;
 }
 
 #endif

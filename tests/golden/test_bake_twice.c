@@ -20,7 +20,7 @@ static const char *section_of(const void *pack, size_t at) {
 
 static void assert_same_files(const char *a, const char *b, const char *line) {
     size_t size_a, size_b, at = 0;
-    unsigned char *x = test_packs_load(a, &size_a), *y = test_packs_load(b, &size_b);
+    unsigned char *x = read_file(a, &size_a), *y = read_file(b, &size_b);
     assert_true(size_a > sizeof(vit_pack_header));
     while (at < size_a && at < size_b && x[at] == y[at])
         at++;

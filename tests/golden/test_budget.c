@@ -19,7 +19,7 @@ static char first_file[TOOL_TEXT], file[TOOL_TEXT];
 static int set_up(void **state) {
     (void)state;
     test_packs_begin();
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     return 0;
 }
 
@@ -29,14 +29,6 @@ static int tear_down(void **state) {
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
         (void)unlink(left[i]);
     return rmdir(FOLDER); /* fails if a .part or anything else was left behind */
-}
-
-static void load(const char *path, char text[TOOL_TEXT]) {
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        fail_msg("%s was not written", path);
-    text[fread(text, 1, TOOL_TEXT - 1, f)] = '\0';
-    (void)fclose(f);
 }
 
 /* A budget that is missed or refused: exit code, one line, nothing on stdout. */
@@ -74,7 +66,7 @@ static void a_report_file_is_json_with_times_work_and_memory(void **state) {
     succeeds(test_pack("list"), "--report " JSON);
     assert_string_equal(r.out, "");
     assert_string_equal(r.err, "");
-    load(JSON, file);
+    read_into(JSON, file, TOOL_TEXT);
     assert_true(json_valid(file));
     static const char *const parts[] = {"\"frames\": {\"first\"", "\"name\": \"visibility\"", "\"name\": \"resolve\""};
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
@@ -120,7 +112,7 @@ static void a_time_budget_is_met_or_missed_with_the_pass_to_blame(void **state) 
     refuses(pack, "--budget=resolve=0.000001,visibility=0.000001,1000000", VIT_BUDGET, "pass visibility p");
     refuses(pack, "--budget resolve=0.000001", VIT_BUDGET, "pass resolve p");
     refuses(pack, "--budget 0.000001,resolve=0.000001 --report " JSON, VIT_BUDGET, "; pass resolve p");
-    load(JSON, file); /* a run that missed its budget still reports */
+    read_into(JSON, file, TOOL_TEXT); /* a run that missed its budget still reports */
     assert_true(json_valid(file));
 }
 
@@ -173,7 +165,7 @@ static void files_of_counts_are_equal_however_they_are_counted(void **state) {
             tool(&r, "%s " TOOL_PLAY " %s --quiet --write-work-budget " WORK " %s", ways[k].environment, test_pack(packs[i]),
                  ways[k].options);
             tool_succeeds(&r);
-            load(WORK, k == 0 ? first_file : file);
+            read_into(WORK, k == 0 ? first_file : file, TOOL_TEXT);
             if (k > 0)
                 assert_string_equal(file, first_file);
         }
@@ -186,7 +178,7 @@ static void change(const char *from, const char *old, const char *now) {
     if (!at)
         fail_msg("no '%s' in\n%s", old, from);
     const int size = snprintf(text, sizeof text, "%.*s%s%s", (int)(at - from), from, now, at + strlen(old));
-    test_packs_write(FOLDER "/changed.work", text, (size_t)size);
+    put_bytes(FOLDER "/changed.work", text, (size_t)size);
 }
 
 /* The line of a pass and kind, without its line feed. */
@@ -205,7 +197,7 @@ static void one_unit_of_work_more_than_allowed_is_named(void **state) {
     char line[128], other[160];
     uint64_t sum, most;
     succeeds(pack, "--write-work-budget " WORK);
-    load(WORK, first_file);
+    read_into(WORK, first_file, TOOL_TEXT);
     succeeds(pack, "--work-budget " WORK);
     assert_string_equal(r.err, "");
 
@@ -238,7 +230,7 @@ static void counts_of_other_frames_are_not_compared(void **state) {
     (void)state;
     const char *pack = test_pack("list");
     succeeds(pack, "--write-work-budget " WORK " --frames 1:3");
-    load(WORK, file);
+    read_into(WORK, file, TOOL_TEXT);
     assert_non_null(strstr(file, "\nframes 1:3 view final format xrgb8888\n"));
     succeeds(pack, "--work-budget " WORK " --frames 1:3");
     refuses(pack, "--work-budget " WORK, VIT_USAGE, "--frames 1:3");
@@ -274,14 +266,14 @@ static void a_file_that_is_no_work_budget_is_bad_input_with_its_line(void **stat
     };
     const char *pack = test_pack("list");
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        test_packs_write(FOLDER "/changed.work", bad[i].text, strlen(bad[i].text));
+        put_bytes(FOLDER "/changed.work", bad[i].text, strlen(bad[i].text));
         refuses(pack, CHANGED, VIT_BAD_INPUT, bad[i].says);
         assert_non_null(strstr(r.err, "changed.work"));
     }
     refuses(pack, "--work-budget " FOLDER "/nowhere.work", VIT_BAD_INPUT, "nowhere.work");
     refuses(pack, "--work-budget " FOLDER, VIT_BAD_INPUT, FOLDER);
     refuses(pack, "--work-budget /dev/zero", VIT_BAD_INPUT, "/dev/zero:1: ");
-    test_packs_write(FOLDER "/changed.work", HEAD "end\n", sizeof HEAD "end\n" - 1);
+    put_bytes(FOLDER "/changed.work", HEAD "end\n", sizeof HEAD "end\n" - 1);
     refuses(pack, CHANGED, VIT_BUDGET, "pass visibility, view_rays");
 }
 

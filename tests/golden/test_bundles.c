@@ -71,12 +71,9 @@ static char *trace(scene_lab *l, const char *options) {
     char line[512];
     (void)snprintf(line, sizeof line, "%s --trace --quiet --device host %s", scene_lab_path(l, "scene.vit"), options);
     scene_lab_run(l, "vitrine-play", line);
-    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
-    char *text = calloc(1u << 20, 1);
-    assert_true(f && text);
-    const size_t n = fread(text, 1, (1u << 20) - 1, f);
-    (void)fclose(f);
-    assert_true(n > FRAMES * 40 && n < (1u << 20) - 1);
+    size_t size;
+    char *text = read_file(scene_lab_path(l, "out.txt"), &size);
+    assert_true(size > FRAMES * 40);
     return text;
 }
 

@@ -32,10 +32,7 @@ static void says(scene_lab *l, const char *text, bool wanted) {
     char said[4096];
     if (scene_lab_said(l, text) == wanted)
         return;
-    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
-    assert_non_null(f);
-    said[fread(said, 1, sizeof said - 1, f)] = '\0';
-    (void)fclose(f);
+    read_into(scene_lab_path(l, "out.txt"), said, sizeof said);
     fail_msg("%s'%s' in\n%s", wanted ? "no " : "", text, said);
 }
 
@@ -145,10 +142,7 @@ static void a_suggested_exposure_shows_the_picture(void **state) {
     write_scene(l, "2000.0", "0.3", "10.0, 10.0, 10.0", "");
     bake(l, "--quiet");
     char said[4096], exposure[32] = "";
-    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
-    assert_non_null(f);
-    said[fread(said, 1, sizeof said - 1, f)] = '\0';
-    (void)fclose(f);
+    read_into(scene_lab_path(l, "out.txt"), said, sizeof said);
     const char *at = strstr(said, "exposure = ");
     assert_non_null(at);
     assert_int_equal(sscanf(at, "exposure = %31s", exposure), 1);

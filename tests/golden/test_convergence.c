@@ -10,10 +10,10 @@
  * same bits everywhere and the reference is good to a tenth of the smallest error, so the figures hardly differ between
  * machines; bounds have room for changes of the method, and the last error's catches what a slope does not see. */
 #include "cost/converge.h"
+#include "test_folder.h"
 #include "tool_run.h"
 #include <dirent.h>
 #include <math.h>
-#include <unistd.h>
 
 #define STEPS 5
 #define LEAST_SLOPE (-0.45) /* measured -0.32, standard error 0.02 */
@@ -21,7 +21,7 @@
 #define LAST_ERROR 0.012 /* NMSE; measured 0.0091 */
 
 static converge_results found, fixed; /* fixed: the radius stays */
-static char folder[] = "/tmp/vitrine-test-XXXXXX";
+static char folder[TEST_FOLDER];
 
 static void converge(pipeline *p, double shrink, converge_results *out) {
     const sweep_input in = {.pipeline = p,
@@ -52,7 +52,7 @@ static int play(void **state) {
     progress quiet = progress_make(true);
     pipeline p = {.progress = &quiet};
     (void)state;
-    assert_non_null(mkdtemp(folder));
+    folder_make_temporary(folder);
     load(&p, VIT_BUILD_DIR "/scenes/cornell.cfg", 60, 48);
     p.scene.quality.photons = 3000;
     p.scene.quality.bounces = 5; /* few: what later reflections would give is to be measured, too */
@@ -107,15 +107,6 @@ static void what_does_not_vanish_is_measured(void **state) {
     assert_true(found.direct > 0 && found.direct < 1e-4);
 }
 
-static void put(const char *name, const char *text) {
-    char path[128];
-    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-}
-
 /* A floor whose normals lean towards a lit wall. */
 static void converge_corner(converge_results *out) {
     static const char text[] = "meshes = ( { file = \"corner.obj\"; } );\n"
@@ -130,9 +121,10 @@ static void converge_corner(converge_results *out) {
     char path[128];
     progress quiet = progress_make(true);
     pipeline p = {.progress = &quiet};
-    put("corner.obj", mesh);
-    put("corner.cfg", text);
-    (void)snprintf(path, sizeof path, "%s/corner.cfg", folder);
+    path_join(path, sizeof path, folder, "corner.obj");
+    put(path, mesh);
+    path_join(path, sizeof path, folder, "corner.cfg");
+    put(path, text);
     load(&p, path, 40, 30);
     converge(&p, CONVERGE_SHRINK, out);
     pipeline_free(&p);
@@ -150,26 +142,16 @@ static void on_smooth_surfaces_the_error_ends_at_what_tessellation_costs(void **
     assert_true(fabs(bent.steps[STEPS - 1].total.bias - bent.normals.bias) < 0.02);
 }
 
-static char *file_text(const char *name) {
-    char path[128];
-    char *text = calloc(1, 1 << 18);
-    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(text);
-    if (!f)
-        fail_msg("%s is missing", path);
-    assert_true(fread(text, 1, (1 << 18) - 1, f) > 0);
-    (void)fclose(f);
-    return text;
-}
-
 static void files_say_what_was_measured(void **state) {
     vit_text why = {""};
-    char slope[64], row[64];
+    char slope[64], row[64], path[128];
     (void)state;
     if (converge_write(&found, folder, &why) != VIT_OK)
         fail_msg("%s", why.text);
-    char *csv = file_text("converge.csv"), *svg = file_text("converge.svg");
+    path_join(path, sizeof path, folder, "converge.csv");
+    char *csv = read_file(path, NULL);
+    path_join(path, sizeof path, folder, "converge.svg");
+    char *svg = read_file(path, NULL);
     const char *at = csv;
     for (uint32_t i = 0; i < STEPS; i++) {
         (void)snprintf(row, sizeof row, "\nstep,%u,", found.steps[i].paths);

@@ -53,19 +53,8 @@ static bool read_cell(const char **at, char *out, size_t room) {
     return last;
 }
 
-static char *read_whole(const char *path) {
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        fail_msg("%s is missing", path);
-    char *text = calloc(1, 1 << 24);
-    assert_non_null(text);
-    assert_true(fread(text, 1, (1 << 24) - 1, f) > 0);
-    (void)fclose(f);
-    return text;
-}
-
 static void read_csv(const char *path) {
-    char *text = read_whole(path);
+    char *text = read_file(path, NULL);
     const char *at = text;
     memset(&csv, 0, sizeof csv);
     while (!read_cell(&at, csv.head[csv.columns++], sizeof csv.head[0]))
@@ -102,7 +91,7 @@ static int row_of(const char *name) {
 static int sweep_once(void **state) {
     (void)state;
     test_packs_begin();
-    (void)mkdir(LAB, 0777);
+    folder_make(LAB);
     tool(&run, SWEEP "-o " LAB "/report --fit 100000");
     tool_succeeds(&run);
     read_csv(LAB "/report/report.csv");
@@ -142,7 +131,7 @@ static void what_changes_no_bit_has_the_defaults_errors(void **state) {
 }
 
 static void json_says_the_same_as_csv(void **state) {
-    char *json = read_whole(LAB "/report/report.json"), *p = json;
+    char *json = read_file(LAB "/report/report.json", NULL), *p = json;
     (void)state;
     for (int i = 0; i < csv.rows; i++) {
         char want[CELL + 64];
@@ -158,7 +147,7 @@ static void json_says_the_same_as_csv(void **state) {
         assert_non_null(strstr(p, want));
     }
     free(json);
-    free(read_whole(LAB "/report/index.html"));
+    free(read_file(LAB "/report/index.html", NULL));
 }
 
 static bool beaten(int i, const char *error) {
@@ -237,18 +226,15 @@ static void a_budget_that_nothing_fits_names_the_closest_miss(void **state) {
 }
 
 static void write_changes_the_quality_block_and_nothing_else(void **state) {
-    char *before = read_whole(SCENE), name[128];
-    FILE *f = fopen(TEST_PACKS "/room-fit.cfg", "wb"); /* beside the mesh that it names */
+    char *before = read_file(SCENE, NULL), name[128];
     (void)state;
-    assert_non_null(f);
-    assert_int_equal(fwrite(before, 1, strlen(before), f), strlen(before));
-    assert_int_equal(fclose(f), 0);
+    put(TEST_PACKS "/room-fit.cfg", before); /* beside the mesh that it names */
     tool(&run, MEASURE "--fit-work 1000000000000 --write " TEST_PACKS "/room-fit.cfg");
     tool_succeeds(&run);
     char block[1024];
     (void)snprintf(block, sizeof block, "%.1000s", strstr(run.out, "\nquality: {") + 1);
     chosen_name(name, sizeof name);
-    char *after = read_whole(TEST_PACKS "/room-fit.cfg"), *at_before = strstr(before, "quality:"),
+    char *after = read_file(TEST_PACKS "/room-fit.cfg", NULL), *at_before = strstr(before, "quality:"),
          *at_after = strstr(after, "quality:");
     assert_true(at_before && at_after && at_before - before == at_after - after);
     assert_memory_equal(before, after, (size_t)(at_before - before));

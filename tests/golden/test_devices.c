@@ -27,7 +27,7 @@ static bool may_mount;
 static int set_up(void **state) {
     (void)state;
     test_packs_begin();
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     may_mount = unshare(CLONE_NEWNS) == 0 && mount(NULL, "/", NULL, MS_REC | MS_PRIVATE, NULL) == 0;
     return 0;
 }
@@ -120,7 +120,7 @@ static void a_full_disk_plays_on_host(void **state) {
     static const char *const sizes[] = {"size=16k", "size=256k", "size=600k"};
     if (!has_pocl())
         return;
-    (void)mkdir(FOLDER "/full", 0777);
+    folder_make(FOLDER "/full");
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         if (!mount_small(FOLDER "/full", sizes[i])) {
             print_message("may not mount here: a full disk is not tried\n");
@@ -143,7 +143,7 @@ static void the_baker_says_what_keeps_pocl_from_compiling(void **state) {
     tool(&r, "POCL_CACHE_DIR=/dev/null/x " TOOL_BAKE " " TEST_SCENES
              "/furnace.cfg --size 16x12 --frames 1 --no-check --device pocl --quiet -o " FOLDER "/none.vit");
     tool_refuses(&r, "vitrine-bake", VIT_FAILED, "set POCL_CACHE_DIR to a folder with room");
-    (void)mkdir(FOLDER "/none", 0777);
+    folder_make(FOLDER "/none");
     if (!mount_small(FOLDER "/none", "size=16k")) {
         print_message("may not mount here: a full disk is not tried\n");
         return;
@@ -159,7 +159,7 @@ static void a_read_only_disk_plays_on_host_whatever_is_in_the_cache(void **state
     (void)state;
     if (!has_pocl())
         return;
-    (void)mkdir(FOLDER "/filled", 0777);
+    folder_make(FOLDER "/filled");
     if (!mount_small(FOLDER "/filled", "size=200m")) {
         print_message("may not mount here: a read-only disk is not tried\n");
         return;
@@ -191,10 +191,7 @@ static void the_summary_and_the_report_name_the_device(void **state) {
     tool(&r, TOOL_PLAY " %s --device host --report " FOLDER "/out.json", test_pack("list"));
     tool_succeeds(&r);
     assert_non_null(strstr(r.err, " on Vitrine / kernels as C"));
-    FILE *f = fopen(FOLDER "/out.json", "rb");
-    assert_non_null(f);
-    json[fread(json, 1, sizeof json - 1, f)] = '\0';
-    (void)fclose(f);
+    read_into(FOLDER "/out.json", json, sizeof json);
     (void)unlink(FOLDER "/out.json");
     assert_non_null(strstr(json, "\"device\": \"Vitrine / kernels as C"));
 }

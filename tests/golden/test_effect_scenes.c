@@ -110,7 +110,7 @@ static void bake(scene_lab *l, const char *lights, const char *thing, const char
 }
 
 static void *load(scene_lab *l, size_t *size) {
-    return test_packs_load(scene_lab_path(l, "scene.vit"), size);
+    return read_file(scene_lab_path(l, "scene.vit"), size);
 }
 
 /* What --explain said of the effect. */

@@ -62,7 +62,7 @@ static vit_requirements requirements(const char *name) {
     vit_requirements need;
     vit_text why = {""};
     size_t size;
-    void *bytes = test_packs_load(test_pack(name), &size);
+    void *bytes = read_file(test_pack(name), &size);
     if (vit_require(&(vit_open_info){.pack = bytes, .pack_size = size}, &need, &why) != VIT_OK)
         fail_msg("%s: %s", name, why.text);
     free(bytes);

@@ -22,7 +22,7 @@ static char whole[TOOL_TEXT], file[TOOL_TEXT];
 static int set_up(void **state) {
     (void)state;
     test_packs_begin();
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     return 0;
 }
 
@@ -32,14 +32,6 @@ static int tear_down(void **state) {
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
         (void)unlink(left[i]);
     return rmdir(FOLDER);
-}
-
-static void load(const char *path, char text[TOOL_TEXT]) {
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        fail_msg("%s was not written", path);
-    text[fread(text, 1, TOOL_TEXT - 1, f)] = '\0';
-    (void)fclose(f);
 }
 
 static void play(const char *options) {
@@ -58,7 +50,7 @@ static void the_file_has_the_hashes_of_the_frames_and_every_device_agrees(void *
     tool_succeeds(&r);
     assert_string_equal(r.out, "");
     assert_string_equal(r.err, "");
-    load(GOLDEN, whole);
+    read_into(GOLDEN, whole, TOOL_TEXT);
     assert_non_null(strstr(whole, "\nframes 0:3 view final format xrgb8888 size 160x120\n"));
     play("--hash");
     for (unsigned i = 0; i < 3; i++) { /* "000001 0123456789abcdef" */
@@ -67,7 +59,7 @@ static void the_file_has_the_hashes_of_the_frames_and_every_device_agrees(void *
     }
     tool(&r, TOOL_PLAY " %s --quiet --write-golden " CHANGED, test_pack("list")); /* on whatever is the default */
     tool_succeeds(&r);
-    load(CHANGED, file);
+    read_into(CHANGED, file, TOOL_TEXT);
     assert_string_equal(file, whole);
     play("--golden " GOLDEN " --loop 2");
     tool_succeeds(&r);
@@ -79,7 +71,7 @@ static void change(const char *old, const char *now) {
     const char *at = strstr(whole, old);
     assert_non_null(at);
     const int size = snprintf(file, sizeof file, "%.*s%s%s", (int)(at - whole), whole, now, at + strlen(old));
-    test_packs_write(CHANGED, file, (size_t)size);
+    put_bytes(CHANGED, file, (size_t)size);
 }
 
 /* One digit of the frame's hash. */
@@ -96,7 +88,7 @@ static void change_frame(unsigned frame) {
 static void the_first_wrong_frame_is_named(void **state) {
     (void)state;
     play("--write-golden " GOLDEN);
-    load(GOLDEN, whole);
+    read_into(GOLDEN, whole, TOOL_TEXT);
     change_frame(1);
     refuses("--golden " CHANGED, VIT_MISMATCH, "frame 1: expected ");
     assert_non_null(strstr(r.err, "(1 of 3 frames differ)"));
@@ -107,10 +99,10 @@ static void the_report_holds_verdict_and_hashes(void **state) {
     (void)state;
     static char row[64];
     play("--write-golden " GOLDEN);
-    load(GOLDEN, whole);
+    read_into(GOLDEN, whole, TOOL_TEXT);
     change_frame(2);
     refuses("--golden " CHANGED " --report " JSON, VIT_MISMATCH, "frame 2: ");
-    load(JSON, file);
+    read_into(JSON, file, TOOL_TEXT);
     assert_true(json_valid(file));
     assert_non_null(
         strstr(file, "\"verdict\": {\"exit\": 4, \"verified\": false, \"golden\": true, \"text\": \"frame 2: expected "));
@@ -118,12 +110,12 @@ static void the_report_holds_verdict_and_hashes(void **state) {
     assert_non_null(strstr(file, row));
     play("--golden " GOLDEN " --verify --report " JSON);
     tool_succeeds(&r);
-    load(JSON, file);
+    read_into(JSON, file, TOOL_TEXT);
     assert_true(json_valid(file));
     assert_non_null(strstr(file, "\"verdict\": {\"exit\": 0, \"verified\": true, \"golden\": true, \"text\": \"\""));
     play("--budget 0.000001 --report " JSON);
     assert_int_equal(r.code, VIT_BUDGET);
-    load(JSON, file);
+    read_into(JSON, file, TOOL_TEXT);
     assert_true(json_valid(file));
     assert_non_null(strstr(file, "\"verdict\": {\"exit\": 3, "));
     assert_non_null(strstr(file, "\"budget\": \"budget by p"));
@@ -133,7 +125,7 @@ static void hashes_of_other_frames_views_formats_and_sizes_are_not_compared(void
     (void)state;
     play("--write-golden " GOLDEN " --frames 1:3 --view normals --format rgba32f");
     tool_succeeds(&r);
-    load(GOLDEN, whole);
+    read_into(GOLDEN, whole, TOOL_TEXT);
     play("--golden " GOLDEN " --frames 1:3 --view normals --format rgba32f");
     tool_succeeds(&r);
     refuses("--golden " GOLDEN " --view normals --format rgba32f", VIT_USAGE, "--frames 1:3");
@@ -170,7 +162,7 @@ static void a_file_that_is_no_golden_file_is_bad_input_with_its_line(void **stat
         {HEAD "0" H "1" H "2" H "end", "no end"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
-        test_packs_write(CHANGED, bad[i].text, strlen(bad[i].text));
+        put_bytes(CHANGED, bad[i].text, strlen(bad[i].text));
         refuses("--golden " CHANGED, VIT_BAD_INPUT, bad[i].says);
         assert_non_null(strstr(r.err, "changed.golden"));
     }
@@ -193,10 +185,10 @@ static void options_that_make_no_sense_are_refused(void **state) {
 /* stdout and stderr in one file: every line is whole. */
 static void tables_and_messages_in_one_pipe_keep_their_lines(void **state) {
     (void)state;
-    FILE *f = fopen(FOLDER "/run.sh", "w");
-    assert_non_null(f);
-    (void)fprintf(f, TOOL_PLAY " %s --device host --report --count-work --max-list 100 2>&1\n", test_pack("list"));
-    assert_int_equal(fclose(f), 0);
+    char script[1024];
+    (void)snprintf(script, sizeof script, TOOL_PLAY " %s --device host --report --count-work --max-list 100 2>&1\n",
+                   test_pack("list"));
+    put(FOLDER "/run.sh", script);
     tool(&r, "sh " FOLDER "/run.sh");
     (void)unlink(FOLDER "/run.sh");
     tool_succeeds(&r);
@@ -215,10 +207,9 @@ static void tables_and_messages_in_one_pipe_keep_their_lines(void **state) {
 
 static void frames_and_text_do_not_share_a_pipe(void **state) {
     (void)state;
-    FILE *f = fopen(FOLDER "/run.sh", "w");
-    assert_non_null(f);
-    (void)fprintf(f, TOOL_PLAY " %s --device host --frames 0 --out raw:- $1 2>&1\n", test_pack("list"));
-    assert_int_equal(fclose(f), 0);
+    char script[1024];
+    (void)snprintf(script, sizeof script, TOOL_PLAY " %s --device host --frames 0 --out raw:- $1 2>&1\n", test_pack("list"));
+    put(FOLDER "/run.sh", script);
     tool(&r, "sh " FOLDER "/run.sh");
     const tool_run loud = r;
     tool(&r, "sh " FOLDER "/run.sh --quiet");
@@ -246,7 +237,7 @@ static void links_are_followed(void **state) {
             static const char old[] = "old";
             (void)unlink(CHANGED);
             if (there)
-                test_packs_write(CHANGED, old, sizeof old - 1);
+                put_bytes(CHANGED, old, sizeof old - 1);
             (void)snprintf(line, sizeof line, "%s" LINK, options[i]);
             play(line);
             tool_succeeds(&r);
@@ -270,10 +261,9 @@ static void links_are_followed(void **state) {
 
 /* Plays in a shell, which sets stdout up. */
 static void play_in_shell(const char *options) {
-    FILE *f = fopen(SCRIPT, "w");
-    assert_non_null(f);
-    (void)fprintf(f, TOOL_PLAY " %s --quiet --device host %s\n", test_pack("list"), options);
-    assert_int_equal(fclose(f), 0);
+    char script[1024];
+    (void)snprintf(script, sizeof script, TOOL_PLAY " %s --quiet --device host %s\n", test_pack("list"), options);
+    put(SCRIPT, script);
     tool(&r, "sh " SCRIPT);
     (void)unlink(SCRIPT);
     tool_succeeds(&r);
@@ -283,17 +273,17 @@ static void play_in_shell(const char *options) {
 static void what_is_no_file_or_is_stdout_is_written_to_in_place(void **state) {
     (void)state;
     play("--write-golden " GOLDEN);
-    load(GOLDEN, whole);
+    read_into(GOLDEN, whole, TOOL_TEXT);
     assert_int_equal(symlink("/proc/self/fd/1", LINK), 0);
     play("--write-golden " LINK); /* stdout is a file without a name */
     tool_succeeds(&r);
     assert_string_equal(r.out, whole);
     play_in_shell("--hash --write-golden " LINK " > " CHANGED);
-    load(CHANGED, file);
+    read_into(CHANGED, file, TOOL_TEXT);
     assert_int_equal(strlen(file), strlen(whole) + 3 * 24); /* the hashes' lines, too */
     assert_non_null(strstr(file, whole));
     play_in_shell("--write-golden " LINK " | cat > " CHANGED);
-    load(CHANGED, file);
+    read_into(CHANGED, file, TOOL_TEXT);
     assert_string_equal(file, whole);
     is_a_link(LINK);
     (void)unlink(LINK);

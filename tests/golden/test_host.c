@@ -67,12 +67,12 @@ static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state)
     (void)state;
     const size_t i = test_packs_find("33x47");
     size_t size[2];
-    void *host = test_packs_load(test_pack("33x47"), &size[0]);
+    void *host = read_file(test_pack("33x47"), &size[0]);
     for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
         tool(&r, "%s" TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --no-check --threads 3 %s %s", ways[k][0],
              test_packs[i].input, ways[k][1], test_packs[i].options);
         tool_succeeds(&r);
-        void *other = test_packs_load(TEST_PACKS "/host.vit", &size[1]);
+        void *other = read_file(TEST_PACKS "/host.vit", &size[1]);
         assert_int_equal(size[0], size[1]);
         assert_memory_equal(host, other, size[0]);
         free(other);
@@ -91,8 +91,8 @@ static void what_is_not_timed_has_no_kernel_compiled(void **state) {
     (void)state;
     test_packs_begin();
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
-        char cache[] = "/tmp/vitrine-test-XXXXXX";
-        assert_non_null(mkdtemp(cache));
+        char cache[TEST_FOLDER];
+        folder_make_temporary(cache);
         tool(&r, "POCL_CACHE_DIR=%s %s", cache, lines[i]);
         tool_succeeds(&r);
         assert_int_equal(rmdir(cache), 0); /* fails if there is anything in it */

@@ -18,7 +18,7 @@ enum { MOST_MOMENTS = 200, KILLS = 12, SAVES = 30, SAVED = 1 << 20 };
 #define PACK "scene.vit"
 
 typedef struct folder {
-    char path[64];
+    char path[TEST_FOLDER];
     char pack[96];
 } folder;
 
@@ -31,9 +31,9 @@ typedef struct packs {
 static tool_run r;
 
 static folder make_folder(void) {
-    folder f = {.path = "/tmp/vitrine-test-XXXXXX"};
-    assert_non_null(mkdtemp(f.path));
-    (void)snprintf(f.pack, sizeof f.pack, "%s/" PACK, f.path);
+    folder f;
+    folder_make_temporary(f.path);
+    path_join(f.pack, sizeof f.pack, f.path, PACK);
     return f;
 }
 
@@ -81,7 +81,7 @@ static packs bake_two(const folder *f) {
         begin_bake(f, "", frames[i]);
         tool_end(&r);
         tool_succeeds(&r);
-        p.bytes[i] = test_packs_load(f->pack, &p.sizes[i]);
+        p.bytes[i] = read_file(f->pack, &p.sizes[i]);
     }
     assert_int_not_equal(p.sizes[0], p.sizes[1]);
     save(f, p.bytes[0], p.sizes[0]);
@@ -92,7 +92,7 @@ static packs bake_two(const folder *f) {
 /* Which of the two is under the pack's name; anything else fails the test. */
 static int which_is_there(const folder *f, const packs *p) {
     size_t size;
-    void *bytes = test_packs_load(f->pack, &size);
+    void *bytes = read_file(f->pack, &size);
     const int which = size == p->sizes[1];
     assert_int_equal(size, p->sizes[which]);
     assert_memory_equal(bytes, p->bytes[which], size);
@@ -250,7 +250,7 @@ static void a_process_killed_while_it_saves_leaves_a_whole_pack_and_one_file_at_
         assert_true(left <= 1);
         with_rest += left;
         size_t size;
-        unsigned char *found = test_packs_load(f.pack, &size);
+        unsigned char *found = read_file(f.pack, &size);
         assert_int_equal(size, SAVED);
         assert_true(found[SAVED - 1] == 1 || found[SAVED - 1] == 2);
         fill(bytes, found[SAVED - 1]);

@@ -167,7 +167,7 @@ static void memory_that_cannot_hold_a_frame_is_refused(void **state) {
 /* The file of --out map:FILE has the rows of the last frame of --out raw:FILE, at multiples of 64 bytes. */
 static void assert_mapped(const char *map, const char *raw) {
     size_t size, raw_size;
-    uint8_t *mapped = test_packs_load(map, &size), *frames = test_packs_load(raw, &raw_size);
+    uint8_t *mapped = read_file(map, &size), *frames = read_file(raw, &raw_size);
     const size_t row = 33 * 4, pitch = 192, height = 47;
     assert_int_equal(size, pitch * height);
     assert_int_equal(raw_size, 2 * row * height);
@@ -181,7 +181,7 @@ static void the_player_renders_into_a_mapped_file(void **state) {
     (void)state;
     static const char *const options[] = {"--device host", "--device pocl"};
     const char *pack = test_pack("33x47");
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     for (size_t i = 0; i < 2; i++) {
         (void)unlink(FOLDER "/frame");
         tool(&r, TOOL_PLAY " %s --quiet %s --out raw:" FOLDER "/raw", pack, options[i]);
@@ -200,7 +200,7 @@ static void the_player_renders_into_a_mapped_file(void **state) {
 static void a_run_that_shows_no_frame_leaves_no_file(void **state) {
     (void)state;
     const char *pack = test_pack("33x47");
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     (void)unlink(FOLDER "/none");
     tool(&r, TOOL_PLAY " %s --quiet --device host --host-isa nonsense --out map:" FOLDER "/none", pack);
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "nonsense");

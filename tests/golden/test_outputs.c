@@ -5,11 +5,11 @@
  * output option is pointed at each input by its name, by a symbolic and by a hard link; whatever is refused, all inputs must
  * have the bytes that they had. That a refusal comes before the work shows by the stages that the baker prints: none may be
  * there. */
+#include "test_folder.h"
 #include "tool_run.h"
 
 #include "vitrine.h"
 #include <fcntl.h>
-#include <sys/stat.h>
 
 #define FOLDER VIT_BUILD_DIR "/tests/golden/outputs"
 #define TOOL_COST VIT_BUILD_DIR "/vitrine-cost"
@@ -41,28 +41,19 @@ enum { FILES = sizeof files / sizeof files[0] };
 
 static tool_run r;
 
-static void path_of(const char *name, char path[256]) {
-    (void)snprintf(path, 256, FOLDER "/%s", name);
-}
-
-static void put(const char *name, const char *text) {
+/* A file of the folder, in the place of what has that name. */
+static void put_anew(const char *name, const char *text) {
     char path[256];
-    path_of(name, path);
+    path_join(path, sizeof path, FOLDER, name);
     (void)unlink(path);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
-    assert_int_equal(fclose(f), 0);
+    put(path, text);
 }
 
 static void check_inputs(void) {
     char path[256], got[1024];
     for (size_t i = 0; i < FILES; i++) {
-        path_of(files[i].name, path);
-        FILE *f = fopen(path, "rb");
-        assert_non_null(f);
-        got[fread(got, 1, sizeof got - 1, f)] = '\0';
-        (void)fclose(f);
+        path_join(path, sizeof path, FOLDER, files[i].name);
+        read_into(path, got, sizeof got);
         if (strcmp(got, files[i].text) != 0)
             fail_msg("%s\nhas destroyed %s", r.line, path);
     }
@@ -70,10 +61,10 @@ static void check_inputs(void) {
 
 static int set_up(void **state) {
     (void)state;
-    (void)mkdir(FOLDER, 0777);
-    (void)mkdir(FOLDER "/d", 0777);
+    folder_make(FOLDER);
+    folder_make(FOLDER "/d");
     for (size_t i = 0; i < FILES; i++)
-        put(files[i].name, files[i].text);
+        put_anew(files[i].name, files[i].text);
     static const char *const left[] = {AS, AS ".json", FOLDER "/one", FOLDER "/protected"}; /* by a run that failed */
     for (size_t i = 0; i < sizeof left / sizeof left[0]; i++)
         (void)unlink(left[i]);
@@ -105,7 +96,7 @@ static void no_pack_is_written_over_what_it_is_made_of(void **state) {
     char path[256];
     (void)state;
     for (size_t i = 0; i < FILES; i++) {
-        path_of(files[i].name, path);
+        path_join(path, sizeof path, FOLDER, files[i].name);
         tool(&r, TOOL_BAKE " " SCENE " --device host --quiet -o %s", path);
         tool_refuses(&r, "vitrine-bake", VIT_USAGE, "is read");
         check_inputs();
@@ -139,14 +130,14 @@ static void no_report_is_written_over_the_scene(void **state) {
     for (size_t k = 0; k < sizeof reports / sizeof reports[0]; k++) {
         (void)snprintf(as, sizeof as, FOLDER "/d/%s", reports[k]);
         for (size_t i = 0; i < FILES; i += 3) { /* the scene, the MTL file, the sky */
-            path_of(files[i].name, path);
+            path_join(path, sizeof path, FOLDER, files[i].name);
             refuses_links(TOOL_COST " " SCENE " --device host --quiet --no-cache -o " FOLDER "/d", as, "vitrine-cost", path);
         }
     }
     refuses_links(TOOL_COST " " SCENE " --device host --quiet --no-cache --converge 5 -o " FOLDER "/d",
                   FOLDER "/d/converge.svg", "vitrine-cost", FOLDER "/mesh.obj");
     (void)snprintf(as, sizeof as, FOLDER "/d/index.html"); /* --write is read and written */
-    put("other.cfg", files[0].text);
+    put_anew("other.cfg", files[0].text);
     refuses_links(TOOL_COST " " SCENE " --device host --quiet --no-cache --fit 33 --write " FOLDER "/other.cfg -o " FOLDER "/d",
                   as, "vitrine-cost", FOLDER "/other.cfg");
     (void)unlink(FOLDER "/other.cfg");
@@ -205,7 +196,7 @@ static void two_outputs_of_a_run_are_two_files(void **state) {
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "the same file");
     tool(&r, PLAY "--report " AS ".json --write-work-budget " FOLDER "/./link.json");
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "the same file");
-    put("one", "");
+    put_anew("one", "");
     assert_int_equal(link(FOLDER "/one", AS), 0);
     tool(&r, PLAY "--out raw:" FOLDER "/one --write-work-budget " AS);
     tool_refuses(&r, "vitrine-play", VIT_USAGE, "the same file");
@@ -221,7 +212,7 @@ static void refuses_to_begin(const char *line, const char *name, int code, const
 
 static void what_cannot_be_written_is_known_before_the_work(void **state) {
     (void)state;
-    put("protected", "mine");
+    put_anew("protected", "mine");
     assert_int_equal(chmod(FOLDER "/protected", 0444), 0);
     refuses_to_begin(BAKE FOLDER "/no/out.vit", "vitrine-bake", VIT_FAILED, "No such file");
     refuses_to_begin(BAKE FOLDER "/d", "vitrine-bake", VIT_FAILED, "is a folder");
@@ -270,9 +261,7 @@ static void the_cache_keeps_what_is_no_reference(void **state) {
     assert_non_null(fgets(name, sizeof name, list));
     (void)pclose(list);
     name[strcspn(name, "\n")] = '\0';
-    FILE *f = fopen(name, "wb");
-    assert_non_null(f);
-    assert_true(fputs("somebody's letter", f) >= 0 && fclose(f) == 0);
+    put(name, "somebody's letter");
     tool(&r,
          TOOL_COST " " SCENE " --device host --quiet --fit-work 1e9 --settings 1 --max-samples 16 --cache " FOLDER "/cache");
     tool_refuses(&r, "vitrine-cost", VIT_FAILED, "is no reference");
@@ -285,8 +274,8 @@ static void the_sources_of_our_scenes_are_not_written_over(void **state) {
     (void)state;
     if (access(VIT_BUILD_DIR "/make-scenes", X_OK) != 0)
         skip();
-    (void)mkdir(FOLDER "/s", 0777);
-    put("s/cornell.cfg", "mine");
+    folder_make(FOLDER "/s");
+    put_anew("s/cornell.cfg", "mine");
     tool(&r, VIT_BUILD_DIR "/make-scenes " FOLDER "/s " FOLDER "/./s");
     tool_refuses(&r, "make-scenes", VIT_USAGE, "which is read");
     assert_int_equal(access(FOLDER "/s/cornell.obj", F_OK), -1);

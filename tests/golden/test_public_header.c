@@ -12,7 +12,7 @@ static tool_run r;
 
 static void compiles(const char *how) {
     test_packs_begin();
-    test_packs_write(TEST_PACKS "/header.c", "#include \"vitrine.h\"\n", 21);
+    put_bytes(TEST_PACKS "/header.c", "#include \"vitrine.h\"\n", 21);
     tool(&r, "cc %s -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude " TEST_PACKS "/header.c", how);
     tool_succeeds(&r);
     assert_string_equal(r.err, "");
@@ -33,7 +33,7 @@ static void the_header_twice_is_as_good_as_once(void **state) {
     test_packs_begin();
     static const char twice[] =
         "#include \"vitrine.h\"\n#include \"vitrine.h\"\nvit *none(void);\nvit *none(void) { return 0; }\n";
-    test_packs_write(TEST_PACKS "/twice.c", twice, sizeof twice - 1);
+    put_bytes(TEST_PACKS "/twice.c", twice, sizeof twice - 1);
     tool(&r, "cc -x c -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude " TEST_PACKS "/twice.c");
     tool_succeeds(&r);
 }
@@ -65,7 +65,7 @@ static const char users_program[] =
 static void a_users_program_needs_the_archive_and_opencl_alone(void **state) {
     (void)state;
     test_packs_begin();
-    test_packs_write(TEST_PACKS "/user.c", users_program, sizeof users_program - 1);
+    put_bytes(TEST_PACKS "/user.c", users_program, sizeof users_program - 1);
     tool(&r, VIT_COMPILE " -std=c11 -Wall -Wextra -Wpedantic -Werror -Iinclude " TEST_PACKS "/user.c " VIT_BUILD_DIR
                          "/libvitrine.a " VIT_LIBS " -o " TEST_PACKS "/user");
     tool_succeeds(&r);
@@ -111,7 +111,7 @@ static const char silent_program[] =
 static void every_call_works_with_nobody_to_tell_why(void **state) {
     (void)state;
     test_packs_begin();
-    test_packs_write(TEST_PACKS "/silent.c", silent_program, sizeof silent_program - 1);
+    put_bytes(TEST_PACKS "/silent.c", silent_program, sizeof silent_program - 1);
     tool(&r, VIT_COMPILE " -std=c11 -Wall -Wextra -Wpedantic -Werror -Iinclude " TEST_PACKS "/silent.c " VIT_BUILD_DIR
                          "/libvitrine.a " VIT_LIBS " -o " TEST_PACKS "/silent");
     tool_succeeds(&r);
@@ -139,13 +139,10 @@ static void value_of(const char *text, const char *name, char *out, size_t size)
 static void the_file_for_pkg_config_says_how_to_link(void **state) {
     (void)state;
     char text[2048], flags[512], libs[512];
-    FILE *f = fopen(VIT_BUILD_DIR "/vitrine.pc", "r");
-    assert_non_null(f);
-    text[fread(text, 1, sizeof text - 1, f)] = '\0';
-    (void)fclose(f);
+    read_into(VIT_BUILD_DIR "/vitrine.pc", text, sizeof text);
     value_of(text, "\nCflags:", flags, sizeof flags);
     value_of(text, "\nLibs:", libs, sizeof libs);
-    test_packs_write(TEST_PACKS "/user.c", users_program, sizeof users_program - 1);
+    put_bytes(TEST_PACKS "/user.c", users_program, sizeof users_program - 1);
     tool(&r, VIT_COMPILE " -std=c11 %s " TEST_PACKS "/user.c -o " TEST_PACKS "/user %s", flags, libs);
     tool_succeeds(&r);
     assert_non_null(strstr(text, "\nVersion: "));
@@ -168,7 +165,7 @@ static void the_archive_exports_only_names_that_begin_with_vit(void **state) {
 }
 
 static int is_there(const char *folder, const char *name, char *path, size_t size) {
-    (void)snprintf(path, size, "%s/%s", folder, name);
+    path_join(path, size, folder, name);
     return access(path, F_OK) == 0;
 }
 
@@ -176,7 +173,7 @@ static int is_there(const char *folder, const char *name, char *path, size_t siz
 static int check_file(const char *folder, const char *name, const char *const folders[], const char *forbidden) {
     char path[512], line[1024], found[1024] = "";
     int count = 0;
-    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
+    path_join(path, sizeof path, folder, name);
     FILE *f = fopen(path, "r");
     assert_non_null(f);
     for (int n = 1; fgets(line, sizeof line, f); n++) {

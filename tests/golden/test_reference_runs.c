@@ -3,10 +3,8 @@
  * the hash of what it got. */
 #include "reference/spread.h"
 #include "reference_lab.h"
+#include "test_folder.h"
 #include <dirent.h>
-#include <stdio.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static char program[512]; /* this one's path */
 
@@ -52,12 +50,12 @@ static uint64_t render_hash(reference_lab *l) {
 
 /* A folder for caches. */
 typedef struct folder {
-    char path[64];
+    char path[TEST_FOLDER];
 } folder;
 
-static folder folder_make(void) {
-    folder f = {"/tmp/vitrine-test-XXXXXX"};
-    assert_non_null(mkdtemp(f.path));
+static folder folder_open(void) {
+    folder f;
+    folder_make_temporary(f.path);
     return f;
 }
 
@@ -69,7 +67,7 @@ static int folder_files(const folder *f, char name[400]) {
     for (struct dirent *e = readdir(d); e; e = readdir(d))
         if (e->d_name[0] != '.') {
             files++;
-            (void)snprintf(name, 400, "%s/%s", f->path, e->d_name);
+            path_join(name, 400, f->path, e->d_name);
         }
     (void)closedir(d);
     return files;
@@ -111,7 +109,7 @@ static void an_interrupted_reference_is_resumed(void **state) {
     reference r;
     vit_text why = {""};
     char name[400];
-    const folder f = folder_make();
+    const folder f = folder_open();
     open_room(&l);
     l.in.max_samples = 256;
     const uint64_t whole = render_hash(&l);
@@ -147,7 +145,7 @@ static void a_finished_reference_is_taken_from_the_cache(void **state) {
     static char text[] = "cached";
     reference_lab l;
     char name[400];
-    const folder f = folder_make();
+    const folder f = folder_open();
     open_room(&l);
     l.in.cache = f.path;
     const uint64_t first = render_hash(&l);
@@ -167,7 +165,7 @@ static void another_input_is_another_reference(void **state) {
     (void)state;
     reference_lab l;
     char name[400];
-    const folder f = folder_make();
+    const folder f = folder_open();
     uint64_t hash[12];
     open_room(&l);
     l.in.cache = f.path;
@@ -210,7 +208,7 @@ static void a_damaged_cache_is_ignored_and_replaced(void **state) {
     reference_lab l;
     char name[400];
     struct stat there, after;
-    const folder f = folder_make();
+    const folder f = folder_open();
     open_room(&l);
     l.in.cache = f.path;
     l.in.max_samples = 16;
@@ -310,7 +308,7 @@ static void ranks_change_no_bit(void **state) {
     for (unsigned ranks = 1; ranks <= 3; ranks++) {
         char command[1024], line[512], name[400];
         unsigned seen = 0;
-        const folder f = folder_make();
+        const folder f = folder_open();
         (void)snprintf(
             command, sizeof command,
             "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n %u %s --rank %s 2>&1", ranks,

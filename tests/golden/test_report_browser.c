@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "report_lab.h"
+#include "test_folder.h"
 #include <png.h>
-#include <unistd.h>
 
 typedef struct bench {
     char folder[64], page[96], log[96], shot[96];
@@ -34,11 +34,10 @@ static const char *find_browser(void) {
 static int set_up(void **state) {
     static bench b;
     vit_text why;
-    (void)snprintf(b.folder, sizeof b.folder, "/tmp/vitrine-browser-XXXXXX");
-    assert_non_null(mkdtemp(b.folder));
-    (void)snprintf(b.page, sizeof b.page, "%s/index.html", b.folder);
-    (void)snprintf(b.log, sizeof b.log, "%s/log", b.folder);
-    (void)snprintf(b.shot, sizeof b.shot, "%s/shot.png", b.folder);
+    folder_make_temporary(b.folder);
+    path_join(b.page, sizeof b.page, b.folder, "index.html");
+    path_join(b.log, sizeof b.log, b.folder, "log");
+    path_join(b.shot, sizeof b.shot, b.folder, "shot.png");
     b.browser = find_browser();
     b.results = lab_results(80, 45);
     (void)snprintf(b.results.settings[3].name, COST_NAME, "a <b>bold</b> & \"odd\" name");

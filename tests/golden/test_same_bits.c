@@ -130,8 +130,8 @@ static void the_device_host_gives_the_bits_of_opencl(void **state) {
 
 static void make_caches(void) {
     test_packs_begin();
-    (void)mkdir(TEST_PACKS "/pocl-loops", 0777);
-    (void)mkdir(TEST_PACKS "/pocl-loopvec", 0777);
+    folder_make(TEST_PACKS "/pocl-loops");
+    folder_make(TEST_PACKS "/pocl-loopvec");
 }
 
 static void a_frame_hashes_the_same_however_it_is_played(void **state) {

@@ -15,23 +15,21 @@ static tool_run r;
 static void copy_headers(const char *header, const char *after, const char *more) {
     static const char *const headers[] = {"vitrine.h", "vitrine_frame.h", "vitrine_pack.h"};
     test_packs_begin();
-    (void)mkdir(FOLDER, 0777);
-    (void)mkdir(FOLDER "/include", 0777);
+    folder_make(FOLDER);
+    folder_make(FOLDER "/include");
     if (access(FOLDER "/kernels", F_OK) != 0)
         assert_int_equal(symlink("../../../../kernels", FOLDER "/kernels"), 0);
     for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++) {
-        char path[256], text[1 << 16] = "", changed[sizeof text + 256];
+        char path[256], text[1 << 16], changed[sizeof text + 256];
         (void)snprintf(path, sizeof path, "include/%s", headers[i]);
-        FILE *f = fopen(path, "r");
-        assert_non_null(f);
-        assert_in_range(fread(text, 1, sizeof text - 1, f), 1, sizeof text - 2);
-        assert_int_equal(fclose(f), 0);
+        read_into(path, text, sizeof text);
+        assert_in_range(strlen(text), 1, sizeof text - 2);
         const char *at = strcmp(headers[i], header) == 0 ? strstr(text, after) : text;
         assert_non_null(at);
         const int cut = at != text ? (int)(at - text) + (int)strlen(after) : 0;
         (void)snprintf(changed, sizeof changed, "%.*s%s%s", cut, text, at != text ? more : "", text + cut);
         (void)snprintf(path, sizeof path, FOLDER "/include/%s", headers[i]);
-        test_packs_write(path, changed, strlen(changed));
+        put_bytes(path, changed, strlen(changed));
     }
 }
 

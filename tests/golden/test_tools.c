@@ -36,7 +36,7 @@ static int empty(const char *folder) {
 static int set_up(void **state) {
     (void)state;
     test_packs_begin();
-    (void)mkdir(FOLDER, 0777);
+    folder_make(FOLDER);
     (void)empty(FOLDER);
     return 0;
 }
@@ -125,13 +125,6 @@ static void a_list_bakes_nothing(void **state) {
     assert_int_equal(empty(FOLDER), 0);
 }
 
-static void write_text(const char *path, const char *text) {
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(text, 1, strlen(text), f), strlen(text));
-    assert_int_equal(fclose(f), 0);
-}
-
 /* A triangle with a morph target, in a file that says that it needs what nobody reads. */
 static void a_list_says_what_is_not_done(void **state) {
     static const char file[] =
@@ -146,7 +139,7 @@ static void a_list_says_what_is_not_done(void **state) {
         "\"buffers\": [{\"byteLength\": 36, \"uri\": "
         "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
     (void)state;
-    write_text(FOLDER "/morph.gltf", file);
+    put(FOLDER "/morph.gltf", file);
     tool(&r, TOOL_BAKE " --list " FOLDER "/morph.gltf");
     tool_succeeds(&r);
     assert_non_null(strstr(r.out, "\nnot done 2\n"));
@@ -165,17 +158,17 @@ static void what_a_scene_file_names_and_is_not_there_is_named_with_its_line(void
     char text[1024];
     (void)state;
     (void)snprintf(text, sizeof text, "%smeshes = ({ file = \"here.obj\"; },\n { file = \"gone.obj\"; });\n", camera);
-    write_text(TEST_PACKS "/names.cfg", text);
-    write_text(TEST_PACKS "/here.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n");
+    put(TEST_PACKS "/names.cfg", text);
+    put(TEST_PACKS "/here.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n");
     bake_refuses(TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:3: mesh '" TEST_PACKS "/gone.obj' is not there");
     bake_refuses("--list " TEST_PACKS "/names.cfg", VIT_BAD_INPUT, "names.cfg:3: mesh '");
     (void)snprintf(text, sizeof text, "%smeshes = ({ file = \"here.obj\"; });\nsky: {\n image = \"gone.hdr\"; };\n", camera);
-    write_text(TEST_PACKS "/names.cfg", text);
+    put(TEST_PACKS "/names.cfg", text);
     bake_refuses(TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:3: sky '" TEST_PACKS "/gone.hdr' is not there");
     (void)snprintf(text, sizeof text,
                    "%smeshes = ({ file = \"here.obj\"; });\nmaterials = (\n{ name = \"paint\"; texture = \"gone.png\"; });\n",
                    camera);
-    write_text(TEST_PACKS "/names.cfg", text);
+    put(TEST_PACKS "/names.cfg", text);
     bake_refuses("--strict " TEST_PACKS "/names.cfg" OUT, VIT_BAD_INPUT, "names.cfg:4: material 'paint': texture '");
     assert_int_equal(remove(TEST_PACKS "/names.cfg"), 0);
     assert_int_equal(remove(TEST_PACKS "/here.obj"), 0);
@@ -201,7 +194,7 @@ static void the_baker_names_a_file_that_is_missing(void **state) {
 
 /* A scene file with this text; `says` holds the line's number where one is to blame. */
 static void scene_refused(const char *text, const char *says) {
-    test_packs_write(TEST_PACKS "/bad.cfg", text, strlen(text));
+    put_bytes(TEST_PACKS "/bad.cfg", text, strlen(text));
     bake_refuses(TEST_PACKS "/bad.cfg" OUT, VIT_BAD_INPUT, says);
     (void)unlink(TEST_PACKS "/bad.cfg");
 }
@@ -226,7 +219,7 @@ static void a_missing_texture_is_an_error_only_if_strict(void **state) {
     static const char text[] =
         "output: { width = 16; height = 16; frames = 1; };\nmeshes = ( { file = \"room.obj\"; } );\n" CAMERA
         "materials = ( { name = \"wall\"; texture = \"nowhere.png\"; } );\n";
-    test_packs_write(TEST_PACKS "/bad.cfg", text, sizeof text - 1);
+    put_bytes(TEST_PACKS "/bad.cfg", text, sizeof text - 1);
     bake_refuses("--strict " TEST_PACKS "/bad.cfg" OUT, VIT_BAD_INPUT, "nowhere.png");
     tool(&r, TOOL_BAKE " --quiet " TEST_PACKS "/bad.cfg" OUT);
     tool_succeeds(&r);
@@ -249,7 +242,7 @@ static void a_required_extension_that_is_not_read_is_an_error_if_strict(void **s
         "\"max\": [1, 1, 0]}],"
         "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"buffers\": [{\"byteLength\": 36, \"uri\": "
         "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
-    test_packs_write(TEST_PACKS "/required.gltf", text, sizeof text - 1);
+    put_bytes(TEST_PACKS "/required.gltf", text, sizeof text - 1);
     bake_refuses("--strict " TEST_PACKS "/required.gltf" OUT, VIT_BAD_INPUT, "extension 'VENDOR_x' is required and not read");
     tool(&r, TOOL_BAKE " --quiet --no-check --device host --size 16x16 --frames 1 " TEST_PACKS "/required.gltf" OUT);
     tool_succeeds(&r);
@@ -267,11 +260,11 @@ static void a_pack_that_cannot_be_written_is_a_failure_and_leaves_nothing(void *
 
 static void a_bake_that_fails_leaves_the_old_pack_alone(void **state) {
     (void)state;
-    test_packs_write(FOLDER "/out.vit", "old", 3);
+    put_bytes(FOLDER "/out.vit", "old", 3);
     tool(&r, TOOL_BAKE " --quiet " FOLDER "/nowhere.cfg" OUT);
     assert_int_equal(r.code, VIT_BAD_INPUT);
     size_t size;
-    char *old = test_packs_load(FOLDER "/out.vit", &size);
+    char *old = read_file(FOLDER "/out.vit", &size);
     assert_int_equal(size, 3);
     assert_memory_equal(old, "old", 3);
     free(old);
@@ -355,13 +348,13 @@ static void options_choose_effects_as_the_scene_file_does(void **state) {
 /* Changes frame `index`'s golden hash of XRGB8888 and makes all of the pack's hashes right again. */
 static void alter_golden(const char *from, const char *to, uint32_t index) {
     image im = {0};
-    im.bytes = test_packs_load(from, &im.size);
+    im.bytes = read_file(from, &im.size);
     im.header = im.bytes;
     im.table = (vit_pack_entry *)(im.header + 1);
     im.golds = section(&im, VIT_SECTION_GOLD);
     im.golds[index].xrgb8888[0] ^= 1;
     forge(&im);
-    test_packs_write(to, im.bytes, im.size);
+    put_bytes(to, im.bytes, im.size);
     free(im.bytes);
 }
 
@@ -387,12 +380,12 @@ static void verify_of_a_format_without_golden_hashes_is_a_mismatch(void **state)
 static void a_pack_cut_short_or_flipped_is_bad_input(void **state) {
     (void)state;
     size_t size;
-    char *bytes = test_packs_load(test_pack("lamp"), &size);
-    test_packs_write(FOLDER "/bad.vit", bytes, size - 1);
+    char *bytes = read_file(test_pack("lamp"), &size);
+    put_bytes(FOLDER "/bad.vit", bytes, size - 1);
     tool(&r, PLAY_HOST " --quiet --verify " FOLDER "/bad.vit");
     tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
     bytes[size / 2] ^= 1;
-    test_packs_write(FOLDER "/bad.vit", bytes, size);
+    put_bytes(FOLDER "/bad.vit", bytes, size);
     tool(&r, PLAY_HOST " --quiet --verify " FOLDER "/bad.vit");
     tool_refuses(&r, "vitrine-play", VIT_BAD_INPUT, FOLDER "/bad.vit: ");
     free(bytes);
@@ -459,7 +452,7 @@ static void a_png_says_its_size(void **state) {
     tool(&r, PLAY_HOST " --quiet %s --frames 1 --out png:" FOLDER "/png", test_pack("33x47"));
     tool_succeeds(&r);
     size_t size;
-    unsigned char *png = test_packs_load(FOLDER "/png/frame_00001.png", &size);
+    unsigned char *png = read_file(FOLDER "/png/frame_00001.png", &size);
     static const unsigned char head[] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0, 0, 0,  13, 'I',
                                          'H',  'D', 'R', 0,   0,  0,  33, 0,  0, 0, 47, 8,  2};
     assert_true(size > 200);
@@ -475,7 +468,7 @@ static void a_raw_frame_is_what_is_hashed(void **state) {
     size_t size;
     tool(&r, PLAY_HOST " --quiet --hash %s --frames 1 --out raw:" FOLDER "/a.raw", test_pack("33x47"));
     tool_succeeds(&r);
-    void *frame = test_packs_load(FOLDER "/a.raw", &size);
+    void *frame = read_file(FOLDER "/a.raw", &size);
     (void)snprintf(want, sizeof want, "000001 %016llx\n", (unsigned long long)vit_hash(frame, size));
     assert_string_equal(r.out, want);
     free(frame);

@@ -8,6 +8,7 @@
 #include "catalogue.h"
 #include "host_rays.h"
 #include "common/octahedral.h"
+#include "test_folder.h"
 #include "tool_run.h"
 #include <float.h>
 
@@ -127,13 +128,6 @@ static void coordinates_wrap_into_0_to_1(void **state) {
                    "coordinates");
 }
 
-static void put(const char *path, const char *text) {
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    (void)fputs(text, f);
-    assert_int_equal(fclose(f), 0);
-}
-
 /* A textured floor whose coordinates and normals are those given. */
 static void meshes_with_such_coordinates_are_baked_or_refused(void **state) {
     static const char *const lines[] = {"vt 1e30 -1e30\nvt -1e38 1e38\nvt 0.5 1e7\nvt -7.25 3.5",
@@ -142,7 +136,7 @@ static void meshes_with_such_coordinates_are_baked_or_refused(void **state) {
     static tool_run t;
     uint64_t worse = 0, bad = 0, floats = 0;
     (void)state;
-    (void)mkdir(VIT_BUILD_DIR "/numeric", 0777);
+    folder_make(VIT_BUILD_DIR "/numeric");
     put(VIT_BUILD_DIR "/numeric/odd.mtl", "newmtl m\nKd 0.8 0.8 0.8\nmap_Kd ../scenes/wood.png\n");
     for (int i = 0; i < LINES; i++) {
         char text[1024];

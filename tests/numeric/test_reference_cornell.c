@@ -160,7 +160,7 @@ static void one_reflection_is_the_radiosity_integral(void **state) {
     size_t size;
     vit_text why;
     reference r;
-    void *pack = test_packs_load(test_pack("list"), &size);
+    void *pack = read_file(test_pack("list"), &size);
     const pack_sections s = pack_sections_of(pack);
     static box b; /* 1. the box, and what stands in it */
     b = (box){.meta = s.data[VIT_SECTION_META],

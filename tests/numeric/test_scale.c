@@ -92,16 +92,9 @@ static void a_scale_changes_the_frame_by_roundings_alone(void **state) {
 
 /* The reference of the pack that render() made last: direct light, which leaves nothing to chance here, times exposure. */
 static void render_reference(scene_lab *l, double direct[DIRECT]) {
-    FILE *f = fopen(scene_lab_path(l, "scene.vit"), "rb");
-    struct stat size;
     reference r;
     vit_text why = {""};
-    assert_non_null(f);
-    assert_int_equal(fstat(fileno(f), &size), 0);
-    void *pack = aligned_alloc(4096, ((size_t)size.st_size + 4095) / 4096 * 4096);
-    assert_non_null(pack);
-    assert_int_equal(fread(pack, 1, (size_t)size.st_size, f), (size_t)size.st_size);
-    (void)fclose(f);
+    void *pack = read_file(scene_lab_path(l, "scene.vit"), NULL);
     const pack_sections sections = pack_sections_of(pack);
     const reference_input in = {
         .sections = &sections, .every = 1, .bounces = 1, .target = 1.0, .max_samples = REFERENCE_ROUND, .threads = 1};

@@ -6,20 +6,13 @@
  * in it. A year in a comment is that of a source, whose name stands beside it: [Name Year] of METHODS.md. Texts are read with
  * line ends and comment marks as blanks, so that a citation may run over a line's end. "name() of FOLDER/FILE" is a function
  * that is there. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
+#include "test_folder.h"
 #include <ctype.h>
 #include <dirent.h>
 #include <fnmatch.h>
 #include <regex.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #define MOST_FILES 2048u
 #define METHOD "kernels/METHODS.md"
@@ -109,18 +102,9 @@ static void add(library *l, const char *path, const char *text) {
 }
 
 static void add_from_disc(library *l, const char *path) {
-    static char text[1 << 20];
-    if (!is_text(path)) {
-        add(l, path, NULL);
-        return;
-    }
-    FILE *in = fopen(path, "rb");
-    assert_non_null(in);
-    const size_t n = fread(text, 1, sizeof text - 1, in);
-    fclose(in);
-    assert_true(n < sizeof text - 1);
-    text[n] = 0;
+    char *text = is_text(path) ? read_file(path, NULL) : NULL;
     add(l, path, text);
+    free(text);
 }
 
 static void walk(library *l, const char *folder) {

@@ -1,16 +1,8 @@
 /* The baker's folders in the order in which data flows: each includes only folders before it, every include names the folder,
  * and no header includes itself by way of others. Reads the sources that lie beside the tests. */
+#include "test_folder.h"
 #include <dirent.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <cmocka.h>
 #include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 static const char *const order[] = {"common",    "scene", "import",    "geometry", "motion", "light", "dark_sides", "zones",
                                     "radiosity", "pack",  "reference", "check",    "report", "cost",  NULL};
@@ -123,11 +115,7 @@ static void read_folder(tree *t, const char *folder) {
         const char *dot = strrchr(e->d_name, '.');
         if (!S_ISREG(s.st_mode) || !dot || (strcmp(dot, ".c") != 0 && strcmp(dot, ".h") != 0))
             continue;
-        FILE *f = fopen(path, "r");
-        char *text = malloc((size_t)s.st_size + 1);
-        assert_true(f && text);
-        text[fread(text, 1, (size_t)s.st_size, f)] = '\0';
-        (void)fclose(f);
+        char *text = read_file(path, NULL);
         read_text(t, below, text);
         free(text);
     }

@@ -81,7 +81,7 @@ static void backslashes_percent_signs_and_foreign_folders_find_their_texture(voi
     static const char *const names[] = {"textures\\wood one.tga", "textures/wood%20one.tga", "C:\\work\\image.tga",
                                         "/home/image.tga"};
     (void)state;
-    (void)mkdir(FILE_OF("textures"), 0777);
+    folder_make(FILE_OF("textures"));
     put_image(FILE_OF("textures/wood one.tga"), 255);
     put_image(FILE_OF("image.tga"), 255);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -3,20 +3,13 @@
  * the importer's (tests/test.mk), so that the child can be made to crash, loop, eat memory, fall silent or lie at will; each
  * must end in one line, VIT_BAD_INPUT and nothing to free, and this process must live. What comes back is not trusted either:
  * messages are forged byte by byte. */
-#include "import/importer.h"
-#include <math.h>
-#include <setjmp.h>
-#include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
-
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_child"
+#include "import/importer.h"
+#include "test_folder.h"
+#include <math.h>
+#include <signal.h>
+#include <sys/resource.h>
+
 #define MESH FOLDER "/mesh.obj"
 
 bool __real_import_file(importer *im, const scene_mesh *mesh);
@@ -60,10 +53,8 @@ static void refuses(bool (*as)(importer *, const scene_mesh *), const char *what
 }
 
 static void mesh_file(void) {
-    (void)mkdir(FOLDER, 0777);
-    FILE *f = fopen(MESH, "wb");
-    assert_non_null(f);
-    assert_true(fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", f) >= 0 && fclose(f) == 0);
+    folder_make(FOLDER);
+    put(MESH, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
 }
 
 /* ---- ends ---- */

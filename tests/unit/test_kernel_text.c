@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "kernel_sources.h"
+#include "test_folder.h"
 
 /* Functions, refused where they are called. */
 static const char *const loose_calls[] = {
@@ -148,18 +149,6 @@ static int refuse(const char *text, char what[WORD]) {
     return bad;
 }
 
-static char *read_text(const char *path) {
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        fail_msg("%s cannot be read", path);
-    char *text = calloc(1, 1 << 20);
-    assert_non_null(text);
-    const size_t n = fread(text, 1, (1 << 20) - 1, f);
-    fclose(f);
-    assert_in_range(n, 1, (1 << 20) - 2);
-    return text;
-}
-
 static bool is_kernel_file(const char *name) {
     const char *dot = strrchr(name, '.');
     return dot && (strcmp(dot, ".cl") == 0 || strcmp(dot, ".clh") == 0);
@@ -177,7 +166,7 @@ static bool is_joined(const char *text) {
 
 /* The file is part of the program, and holds nothing that differs between devices. */
 static void check_strict(const char *path) {
-    char what[WORD], *text = read_text(path);
+    char what[WORD], *text = read_file(path, NULL);
     if (!is_joined(text))
         fail_msg("%s is not part of the program", path);
     if (strcmp(path, "kernels/strict.clh") == 0)
@@ -259,7 +248,7 @@ static void the_runtime_asks_for_no_loose_arithmetic(void **state) {
                                           "-cl-no-signed-zero",
                                           "-cl-denorms-are-zero",
                                           "-cl-single-precision-constant"};
-    char *text = read_text("runtime/device_opencl.c");
+    char *text = read_file("runtime/device_opencl.c", NULL);
     (void)state;
     for (size_t i = 0; i < COUNT(options); i++)
         assert_null(strstr(text, options[i]));

@@ -1,31 +1,11 @@
 /* What --list says. What is hard: names come from strangers and go into JSON and onto terminals; extensions stand in a part of
  * the file that Assimp does not give. Strategy: small files made here, one with the worst of names, whose JSON must be valid by
  * RFC 8259 and hold what was put in; extensions in all the places where the words may stand without being the list. */
+#define FOLDER VIT_BUILD_DIR "/tests/unit/list_files"
 #include "import/gltf_extensions.h"
 #include "json_check.h"
 #include "list.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
-
-#define FOLDER VIT_BUILD_DIR "/tests/unit/list_files"
-#define FILE_OF(name) FOLDER "/" name
-
-static void put(const char *path, const void *bytes, size_t size) {
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, size, f), size);
-    assert_int_equal(fclose(f), 0);
-}
-
-static void put_text(const char *path, const char *text) {
-    put(path, text, strlen(text));
-}
+#include "test_folder.h"
 
 /* What is printed of a mesh or scene file; the caller frees it. */
 static char *list_of(const char *path, bool json) {
@@ -53,23 +33,23 @@ static void holds(const char *text, const char *what) {
 /* A triangle, a lamp, a camera; the names of mesh and material end a line, close a string and are no UTF-8. */
 static void put_odd(void) {
     static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-    put(FILE_OF("odd.bin"), corners, sizeof corners);
-    put_text(FILE_OF("odd.gltf"), "{\"asset\":{\"version\":\"2.0\",\"extensionsUsed\":[\"NOT_THIS\"]},\"extras\":{"
-                                  "\"extensionsRequired\":[\"NOR_THIS\"]},\"scene\":0,"
-                                  "\"extensionsUsed\" : [ \"KHR_lights_punctual\",\"VENDOR_strange\\\"one\" , "
-                                  "\"KHR_materials_ior\"],\"extensionsRequired\":[\"VENDOR_needed\"],"
-                                  "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"translation\":"
-                                  "[0,2,0],\"extensions\":{\"KHR_lights_punctual\":"
-                                  "{\"light\":0}}},{\"name\":\"Eye\",\"camera\":0}],\"cameras\":[{\"type\":\"perspective\","
-                                  "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":1,"
-                                  "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","
-                                  "\"intensity\":68.3,\"name\":\"extensionsUsed\"}]}},"
-                                  "\"buffers\":[{\"uri\":\"odd.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
-                                  "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
-                                  "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
-                                  "\"materials\":[{\"name\":\"m\\\"a\\\\t\\n</script>\"}],\"meshes\":[{\"name\":\"odd "
-                                  "\xff\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
-                                  "\"material\":0}]}]}");
+    put_bytes(FILE_OF("odd.bin"), corners, sizeof corners);
+    put(FILE_OF("odd.gltf"), "{\"asset\":{\"version\":\"2.0\",\"extensionsUsed\":[\"NOT_THIS\"]},\"extras\":{"
+                             "\"extensionsRequired\":[\"NOR_THIS\"]},\"scene\":0,"
+                             "\"extensionsUsed\" : [ \"KHR_lights_punctual\",\"VENDOR_strange\\\"one\" , "
+                             "\"KHR_materials_ior\"],\"extensionsRequired\":[\"VENDOR_needed\"],"
+                             "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"translation\":"
+                             "[0,2,0],\"extensions\":{\"KHR_lights_punctual\":"
+                             "{\"light\":0}}},{\"name\":\"Eye\",\"camera\":0}],\"cameras\":[{\"type\":\"perspective\","
+                             "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":1,"
+                             "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","
+                             "\"intensity\":68.3,\"name\":\"extensionsUsed\"}]}},"
+                             "\"buffers\":[{\"uri\":\"odd.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
+                             "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+                             "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
+                             "\"materials\":[{\"name\":\"m\\\"a\\\\t\\n</script>\"}],\"meshes\":[{\"name\":\"odd "
+                             "\xff\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+                             "\"material\":0}]}]}");
 }
 
 static void odd_names_are_valid_json(void **state) {
@@ -111,7 +91,7 @@ static void only_the_files_own_lists_of_extensions_count(void **state) {
     assert_true(list[0].read && !list[0].required);
     assert_string_equal(list[3].name, "VENDOR_needed");
     assert_true(list[3].required && !list[3].read);
-    put_text(FILE_OF("odd.obj"), "v 0 0 0\n");
+    put(FILE_OF("odd.obj"), "v 0 0 0\n");
     assert_int_equal(gltf_extensions(FILE_OF("odd.obj"), list), 0);
     assert_int_equal(gltf_extensions(FILE_OF("nowhere.gltf"), list), 0);
 }
@@ -123,23 +103,23 @@ static void extensions_of_a_glb_are_found_and_broken_ones_do_no_harm(void **stat
     (void)state;
     glb[12] = sizeof json - 1;
     memcpy(glb + 20, json, sizeof json - 1);
-    put(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
+    put_bytes(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
     assert_int_equal(gltf_extensions(FILE_OF("a.glb"), list), 2);
     assert_true(strcmp(list[1].name, "B") == 0 && list[1].required && !list[0].required);
     memset(glb + 12, 0xff, 4); /* longer than the file */
-    put(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
+    put_bytes(FILE_OF("a.glb"), glb, 20 + sizeof json - 1);
     assert_int_equal(gltf_extensions(FILE_OF("a.glb"), list), 0);
     for (size_t cut = 0; cut < sizeof json; cut++) { /* ended anywhere */
-        put(FILE_OF("a.gltf"), json, cut);
+        put_bytes(FILE_OF("a.gltf"), json, cut);
         assert_in_range(gltf_extensions(FILE_OF("a.gltf"), list), 0, 2);
     }
 }
 
 static void what_is_not_done_is_told(void **state) {
     (void)state;
-    put_text(FILE_OF("b.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd nowhere.png\n");
-    put_text(FILE_OF("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
-    put_text(FILE_OF("b.cfg"), "meshes = ( { file = \"b.obj\"; }, { file = \"odd.gltf\"; } );\ncamera: { use = \"Eye\"; };\n");
+    put(FILE_OF("b.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd nowhere.png\n");
+    put(FILE_OF("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    put(FILE_OF("b.cfg"), "meshes = ( { file = \"b.obj\"; }, { file = \"odd.gltf\"; } );\ncamera: { use = \"Eye\"; };\n");
     put_odd();
     char *text = list_of(FILE_OF("b.cfg"), true);
     assert_true(json_valid(text));
@@ -150,12 +130,6 @@ static void what_is_not_done_is_told(void **state) {
     text = list_of(FILE_OF("b.cfg"), false);
     holds(text, "\nnot done 2\n");
     free(text);
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 int main(void) {

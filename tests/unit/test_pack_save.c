@@ -7,31 +7,25 @@
 #include <cmocka.h>
 
 #include "pack/pack_write.h"
+#include "test_folder.h"
 
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 enum { SIZE = 20000, LIMIT = 5000, ABANDONED = 7 };
 
-static char folder[64];
+static char folder[TEST_FOLDER];
 static char path[128];
 static unsigned char bytes[SIZE];
 
 static int make_folder(void **state) {
     (void)state;
-    strcpy(folder, "/tmp/vitrine-test-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    snprintf(path, sizeof path, "%s/scene.vit", folder);
+    folder_make_temporary(folder);
+    path_join(path, sizeof path, folder, "scene.vit");
     for (int i = 0; i < SIZE; i++)
         bytes[i] = (unsigned char)(i * 7 + 3);
     return 0;
@@ -55,13 +49,10 @@ static int remove_folder(void **state) {
 }
 
 static void assert_file_holds(const unsigned char *expected, size_t size) {
-    unsigned char *found = malloc(size + 1);
-    assert_non_null(found);
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    assert_int_equal(fread(found, 1, size + 1, file), size);
+    size_t got;
+    unsigned char *found = read_file(path, &got);
+    assert_int_equal(got, size);
     assert_memory_equal(found, expected, size);
-    fclose(file);
     free(found);
 }
 
@@ -158,18 +149,15 @@ static void a_name_that_is_too_long_is_refused(void **state) {
     assert_int_equal(entries(), 0);
 }
 
-static void put_text(const char *end, const char *text) {
+static void put_beside(const char *end, const char *text) {
     char name[192];
     snprintf(name, sizeof name, "%s%s", path, end);
-    FILE *file = fopen(name, "w");
-    assert_non_null(file);
-    assert_true(fwrite(text, 1, strlen(text) + 1, file) == strlen(text) + 1);
-    assert_int_equal(fclose(file), 0);
+    put_bytes(name, text, strlen(text) + 1);
 }
 
 /* What is left of a save that was killed begins as a pack does. */
-static void put(const char *end) {
-    put_text(end, VIT_PACK_MAGIC);
+static void put_left(const char *end) {
+    put_beside(end, VIT_PACK_MAGIC);
 }
 
 static void drop(const char *end) {
@@ -181,8 +169,8 @@ static void drop(const char *end) {
 static void what_a_killed_process_left_is_removed_by_the_next_save(void **state) {
     (void)state;
     vit_text why = {""};
-    put(".tmp-4711-0");
-    put(".tmp-1-12");
+    put_left(".tmp-4711-0");
+    put_left(".tmp-1-12");
     assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
     assert_int_equal(entries(), 1);
 }
@@ -193,7 +181,7 @@ static void files_that_only_look_like_ours_stay(void **state) {
     enum { ENDS = sizeof ends / sizeof ends[0] };
     vit_text why = {""};
     for (int i = 0; i < ENDS; i++)
-        put(ends[i]);
+        put_left(ends[i]);
     assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
     assert_int_equal(entries(), 1 + ENDS);
     for (int i = 0; i < ENDS; i++)
@@ -204,7 +192,7 @@ static void files_that_only_look_like_ours_stay(void **state) {
 static void files_of_others_under_our_names_stay(void **state) {
     (void)state;
     vit_text why = {""};
-    put_text(".tmp-4711-0", "fov = 60.0;");
+    put_beside(".tmp-4711-0", "fov = 60.0;");
     assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);
     assert_int_equal(entries(), 2);
     drop(".tmp-4711-0");
@@ -216,7 +204,7 @@ static void a_link_is_followed(void **state) {
     char name[192];
     struct stat link;
     vit_text why = {""};
-    put(".target");
+    put_left(".target");
     snprintf(name, sizeof name, "%s.target", path);
     assert_int_equal(symlink(name, path), 0);
     assert_int_equal(pack_save(path, bytes, SIZE, &why), VIT_OK);

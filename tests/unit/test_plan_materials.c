@@ -2,17 +2,10 @@
  * its share of the photons. What is hard: an effect too many costs time in every frame, one too few leaves a material black.
  * Strategy: one room with one thing more each, through the steps of the baker that need no device; what is called for is held
  * to be that and nothing else. */
-#include "pack/planner.h"
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <cmocka.h>
-
 #define FOLDER VIT_BUILD_DIR "/tests/unit/plan_materials_files"
+#include "pack/planner.h"
+#include "test_folder.h"
+#include <math.h>
 
 typedef struct planned {
     scene s;
@@ -23,13 +16,6 @@ typedef struct planned {
     atlas a;
     plan p;
 } planned;
-
-static void put(const char *path, const char *text) {
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
 
 #define LAMP "lights = ( { type = \"point\"; keys = ( { position = (0, 1, 0); power = (1, 1, 1); } ); } );\n"
 #define MAKES(text) "materials = ( { name = \"floor\"; " text " } );\n"
@@ -198,12 +184,6 @@ static void photons_are_shared_by_power(void **state) {
     assert_true(fabs(x.p.baked_paths[0] - all * sun / (sun + lamp)) <= 17);
     assert_true(fabs(x.p.baked_paths[1] - all * lamp / (sun + lamp)) <= 17);
     plan_scene_free(&x);
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 int main(void) {

@@ -5,17 +5,10 @@
  * Nothing here opens a device. What the frames are is the golden tests' subject. Each error is held to the same three
  * promises: the exit code says the cause, stderr is one line that begins with the program's name, stdout is empty. */
 #include "play/sinks/sink.h"
+#include "test_folder.h"
 #include <fcntl.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
-#include <cmocka.h>
 
 #define PLAYER VIT_BUILD_DIR "/vitrine-play"
 #define WORDS_MAX 12
@@ -33,37 +26,22 @@ typedef struct outcome {
     char out[TEXT_MAX], err[TEXT_MAX];
 } outcome;
 
-static void write_file(const char *path, const void *bytes, size_t size) {
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, size, f), size);
-    assert_int_equal(fclose(f), 0);
-}
-
-static void read_file(const char *path, char *text) {
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    text[fread(text, 1, TEXT_MAX - 1, f)] = '\0';
-    (void)fclose(f);
-}
-
 static int set_up(void **state) {
     static bench b;
-    (void)snprintf(b.folder, sizeof b.folder, "/tmp/vitrine-test-XXXXXX");
-    assert_non_null(mkdtemp(b.folder));
-    (void)snprintf(b.missing, sizeof b.missing, "%s/missing.vit", b.folder);
-    (void)snprintf(b.empty, sizeof b.empty, "%s/empty.vit", b.folder);
-    (void)snprintf(b.garbage, sizeof b.garbage, "%s/garbage.vit", b.folder);
-    (void)snprintf(b.magic_only, sizeof b.magic_only, "%s/magic.vit", b.folder);
-    (void)snprintf(b.pipe, sizeof b.pipe, "%s/pipe.vit", b.folder);
-    (void)snprintf(b.out, sizeof b.out, "%s/out", b.folder);
-    (void)snprintf(b.err, sizeof b.err, "%s/err", b.folder);
+    folder_make_temporary(b.folder);
+    path_join(b.missing, sizeof b.missing, b.folder, "missing.vit");
+    path_join(b.empty, sizeof b.empty, b.folder, "empty.vit");
+    path_join(b.garbage, sizeof b.garbage, b.folder, "garbage.vit");
+    path_join(b.magic_only, sizeof b.magic_only, b.folder, "magic.vit");
+    path_join(b.pipe, sizeof b.pipe, b.folder, "pipe.vit");
+    path_join(b.out, sizeof b.out, b.folder, "out");
+    path_join(b.err, sizeof b.err, b.folder, "err");
     unsigned char noise[8192];
     for (size_t i = 0; i < sizeof noise; i++)
         noise[i] = (unsigned char)(i * 2654435761u >> 13);
-    write_file(b.empty, "", 0);
-    write_file(b.garbage, noise, sizeof noise);
-    write_file(b.magic_only, "VITRINE", 8);
+    put_bytes(b.empty, "", 0);
+    put_bytes(b.garbage, noise, sizeof noise);
+    put_bytes(b.magic_only, "VITRINE", 8);
     assert_int_equal(mkfifo(b.pipe, 0600), 0);
     *state = &b;
     return 0;
@@ -105,10 +83,10 @@ static void run_into(const bench *b, const char *out, const char *line, outcome 
     int status;
     assert_int_equal(waitpid(child, &status, 0), child);
     o->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    read_file(b->err, o->err);
+    read_into(b->err, o->err, TEXT_MAX);
     o->out[0] = '\0';
     if (strcmp(out, b->out) == 0)
-        read_file(out, o->out);
+        read_into(out, o->out, TEXT_MAX);
 }
 
 static void run(const bench *b, const char *line, outcome *o) {

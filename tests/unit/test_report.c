@@ -11,8 +11,7 @@
 
 #include "json_check.h"
 #include "report_lab.h"
-#include <sys/stat.h>
-#include <unistd.h>
+#include "test_folder.h"
 
 typedef struct bench {
     char folder[64], out[96];
@@ -21,9 +20,8 @@ typedef struct bench {
 
 static int set_up(void **state) {
     static bench b;
-    (void)snprintf(b.folder, sizeof b.folder, "/tmp/vitrine-report-XXXXXX");
-    assert_non_null(mkdtemp(b.folder));
-    (void)snprintf(b.out, sizeof b.out, "%s/a/b", b.folder);
+    folder_make_temporary(b.folder);
+    path_join(b.out, sizeof b.out, b.folder, "a/b");
     b.results = lab_results(64, 36);
     *state = &b;
     return 0;
@@ -34,7 +32,7 @@ static int tear_down(void **state) {
     const char *names[] = {"a/b/report.csv", "a/b/report.json", "a/b/index.html", "a/b", "a", "file"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[160];
-        (void)snprintf(path, sizeof path, "%s/%s", b->folder, names[i]);
+        path_join(path, sizeof path, b->folder, names[i]);
         (void)remove(path);
     }
     lab_free(&b->results);
@@ -44,19 +42,8 @@ static int tear_down(void **state) {
 /* The whole file, ended with a zero; NULL: there is none. The caller frees it. */
 static char *file_text(const bench *b, const char *name) {
     char path[160];
-    (void)snprintf(path, sizeof path, "%s/%s", b->out, name);
-    FILE *f = fopen(path, "rb");
-    if (!f)
-        return NULL;
-    assert_int_equal(fseek(f, 0, SEEK_END), 0);
-    const long size = ftell(f);
-    rewind(f);
-    char *text = malloc((size_t)size + 1);
-    assert_non_null(text);
-    assert_int_equal(fread(text, 1, (size_t)size, f), size);
-    text[size] = '\0';
-    (void)fclose(f);
-    return text;
+    path_join(path, sizeof path, b->out, name);
+    return access(path, F_OK) == 0 ? read_file(path, NULL) : NULL;
 }
 
 static void write_report(const bench *b) {
@@ -245,11 +232,9 @@ static void a_folder_that_cannot_be_made_gives_one_line(void **state) {
     bench *b = *state;
     char path[128];
     vit_text why = {""};
-    (void)snprintf(path, sizeof path, "%s/file", b->folder);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    assert_int_equal(fclose(f), 0);
-    (void)snprintf(path, sizeof path, "%s/file/out", b->folder);
+    path_join(path, sizeof path, b->folder, "file");
+    put(path, "");
+    path_join(path, sizeof path, b->folder, "file/out");
     assert_int_equal(report_write(&b->results, path, &why), VIT_FAILED);
     assert_non_null(strstr(why.text, "/file/out: cannot make this folder: Not a directory"));
     assert_null(strchr(why.text, '\n'));

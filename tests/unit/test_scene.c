@@ -3,33 +3,18 @@
  * field by field, and its defaults; then one scene a mistake, each of which differs from a good one in that mistake alone,
  * stands on a line of its own, and must give VIT_BAD_INPUT and exactly "file:line: ... what". Scenes go through real files,
  * since files (missing, folders, includes) are half of the subject. */
+#define FOLDER VIT_BUILD_DIR "/tests/unit/scene_files"
 #include "scene/scene.h"
 #include "vitrine_pack.h"
+#include "test_folder.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
 
-static const char folder[] = VIT_BUILD_DIR "/tests/unit/scene_files";
-
-#define NAME VIT_BUILD_DIR "/tests/unit/scene_files/test.cfg"
+#define NAME FOLDER "/test.cfg"
 #define MESH "meshes = ( { file = \"a.obj\"; } );\n"
 #define CAMERA "camera: { keys = ( { eye = (0, 1, 3); target = (0, 1, 0); } ); };\n"
 #define GOOD MESH CAMERA
 #define KEYS "keys = ( { position = (0, 1, 0); power = (1, 1, 1); } ); "
 #define SPOT "keys = ( { position = (0, 1, 0); target = (0, 0, 0); power = (1, 1, 1); } ); "
-
-static void put(const char *path, const char *text) {
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
 
 static void read_good(const char *text, scene *s) {
     vit_text why = {{0}};
@@ -410,7 +395,7 @@ static void a_missing_scene_is_refused(void **state) {
 
 static void a_folder_is_refused(void **state) {
     (void)state;
-    refuse_path(folder, "is a folder");
+    refuse_path(FOLDER, "is a folder");
 }
 
 static void an_endless_device_is_refused(void **state) {
@@ -493,12 +478,6 @@ static void no_prefix_of_a_scene_does_harm(void **state) {
         else
             assert_int_equal(strncmp(why.text, NAME ":", sizeof NAME), 0);
     }
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(folder, 0777);
-    return 0;
 }
 
 #define T(name) cmocka_unit_test(name)

@@ -1,18 +1,11 @@
 /* The scene file's settings for effects: ambient light, sky, directional lights, mirrors, glass, lobes, anti-aliasing. What is
  * hard, and the strategy, are as in test_scene.c: one scene in which no setting has its default, and one scene a mistake. */
+#define FOLDER VIT_BUILD_DIR "/tests/unit/scene_effects_files"
 #include "pack/copies.h"
 #include "scene/scene.h"
+#include "test_folder.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
 
-#define FOLDER VIT_BUILD_DIR "/tests/unit/scene_effects_files"
 #define NAME FOLDER "/test.cfg"
 #define GOOD                                                                                                                   \
     "meshes = ( { file = \"a.obj\"; } );\n"                                                                                    \
@@ -23,10 +16,7 @@
 #define QUALITY(text) GOOD "quality: { " text " };\n"
 
 static vit_status read_text(const char *text, scene *s, vit_text *why) {
-    FILE *file = fopen(NAME, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
+    put(NAME, text);
     *why = (vit_text){{0}};
     return scene_read(NAME, s, why);
 }
@@ -288,12 +278,6 @@ static void a_tents_copies_lie_as_its_weight_does(void **state) {
         }
         assert_true(fabs(mean) < 1e-6 && fabs(square - 1.0 / 6) < 0.01); /* a tent's variance */
     }
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 int main(void) {

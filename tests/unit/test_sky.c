@@ -2,17 +2,10 @@
  * octahedral square, that the square's edges do not show, and that directions are chosen as they shine. Truths are sums over
  * the picture in double. */
 #include "light/sky.h"
+#include "test_folder.h"
 
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdbool.h>
-#include <setjmp.h>
-#include <cmocka.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #define PI 3.14159265358979
 enum { WIDE = 128, HIGH = 64 };
@@ -223,10 +216,7 @@ static void a_sky_without_a_picture_is_even(void **state) {
 static const char *write_file(const void *bytes, size_t size) {
     static char path[64];
     (void)snprintf(path, sizeof path, "/tmp/vitrine-sky-%ld", (long)getpid());
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, size, f), size);
-    (void)fclose(f);
+    put_bytes(path, bytes, size);
     return path;
 }
 
