@@ -1,53 +1,15 @@
 /* What the importer makes of MTL's and glTF's materials that are not matt. What is hard: programs write highlights, mirrors and
  * transparency that nobody meant, and mean what they do not write. Strategy: tiny files written here, one rule each, with
  * numbers that can be worked out by hand; where the test scenes are at hand (VITRINE_SCENES or ../shared/scenes), real ones. */
-#include "import/metallic_roughness.h"
-#include "import/model.h"
-#include "vitrine_pack.h"
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <cmocka.h>
-
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_materials_files"
-#define FILE_OF(name) FOLDER "/" name
-
-static char last_warning[1024];
-
-static void remember(void *user, const char *line) {
-    (void)user;
-    (void)snprintf(last_warning, sizeof last_warning, "%s", line);
-}
-
-static void put(const char *path, const char *text) {
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
+#include "import_lab.h"
+#include "import/metallic_roughness.h"
 
 /* A triangle a material of those of m.mtl, or of m.gltf, through a scene whose `materials` are `overrides`. */
 static void import_scene(const char *mesh, const char *overrides, model *m) {
-    char text[2048];
-    scene s;
-    vit_text why = {{0}};
-    (void)snprintf(text, sizeof text,
-                   "meshes = ( { file = \"%s\"; } ); camera: { keys = ( { eye = (0, 1, 3); target = (0, 1, 0); } ); };\n%s\n",
-                   mesh, overrides);
-    put(FILE_OF("m.cfg"), text);
-    vit_status status = scene_read(FILE_OF("m.cfg"), &s, &why);
-    last_warning[0] = '\0';
-    if (status == VIT_OK)
-        status = model_import(&s, false, remember, NULL, m, &why);
-    if (status != VIT_OK)
-        print_error("%s\n", why.text);
-    assert_int_equal(status, VIT_OK);
-    scene_free(&s);
+    vit_text why;
+    if (import_in_scene(mesh, overrides, m, &why) != VIT_OK)
+        fail_msg("%s", why.text);
 }
 
 /* `mtl` holds materials "a", "b" and so on, `count` of them. */
@@ -290,20 +252,17 @@ static void smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it(void **state
 }
 
 /* 2 x 1 texels, TGA: red (255, 0, 0) and (0, 255, 128), the latter with alpha 0.4. */
-static void put_image(void) {
+static void put_texture(void) {
     static const uint8_t bytes[26] = {0, 0, 2, 0,  0,    0, 0, 0,   0,   0,   0,   0, 2,
                                       0, 1, 0, 32, 0x28, 0, 0, 255, 255, 128, 255, 0, 102};
-    FILE *f = fopen(FILE_OF("t.tga"), "wb");
-    assert_non_null(f);
-    assert_int_equal(fwrite(bytes, 1, sizeof bytes, f), sizeof bytes);
-    assert_int_equal(fclose(f), 0);
+    put_bytes(FILE_OF("t.tga"), bytes, sizeof bytes);
 }
 #define IMAGE ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"t.tga\"}]"
 
 static void lobes_take_the_mean_of_textures(void **state) {
     model m;
     (void)state;
-    put_image();
+    put_texture();
     /* Green is roughness, blue metalness: 0.5 * 128 / 255. */
     import_gltf(PBR("\"baseColorFactor\":[0.5,0.25,1,1],\"metallicFactor\":0.5,\"metallicRoughnessTexture\":{\"index\":0}"),
                 IMAGE, "", &m);
@@ -357,7 +316,7 @@ static void transmission_is_glass(void **state) {
 static void what_is_clear_by_alpha_as_well_is_glass_and_no_hole(void **state) {
     model m;
     (void)state;
-    put_image();
+    put_texture();
     import_gltf(PBR("\"baseColorTexture\":{\"index\":0}") ",\"alphaMode\":\"BLEND\"," TRANSMITS("1", ""), USED IMAGE, "", &m);
     assert_true(m.materials[0].kind == VIT_THIN_GLASS && m.materials[0].cutoff == 0.0f && m.materials[0].image < 0);
     assert_true(near3(m.materials[0].specular, 0.5, 0.5, 0.5 * pow((128 / 255.0 + 0.055) / 1.055, 2.4)));
@@ -367,7 +326,7 @@ static void what_is_clear_by_alpha_as_well_is_glass_and_no_hole(void **state) {
 static void specular_and_glossiness_make_a_lobe(void **state) {
     model m;
     (void)state;
-    put_image();
+    put_texture();
     import_gltf("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.75,1],"
                 "\"specularFactor\":[0.25,0.5,0.125],"
                 "\"glossinessFactor\":0.5}}",
@@ -474,12 +433,6 @@ static void the_dragon_is_of_amber(void **state) {
     assert_true(cloth->kind == VIT_MATTE && cloth->exponent > 6.0f && cloth->exponent < 7.0f &&
                 near3(cloth->specular, 0.04, 0.04, 0.04));
     model_free(&m);
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 int main(void) {

@@ -1,47 +1,13 @@
 /* Transparent materials are holes, but no file may vanish for it. What is hard: exporters write opacity where transparency is
  * asked for, and the other way round, and nothing in a file says so. Strategy: small files of three materials "a", "b", "c" of
  * 8, 1 and 1 triangles, one row each: which of them are left, and which warning says so. */
-#include "import/model.h"
-#include "vitrine_pack.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <cmocka.h>
-
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_transparency_files"
-#define FILE_OF(name) FOLDER "/" name
+#include "import_lab.h"
 
-static char warnings[4096];
-
-static void remember(void *user, const char *line) {
-    const size_t used = strlen(warnings);
-    (void)user;
-    (void)snprintf(warnings + used, sizeof warnings - used, "%s\n", line);
-}
-
-static void put(const char *path, const char *text) {
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-}
-
-static vit_status import_file(const char *mesh, const char *overrides, model *m, vit_text *why) {
+static vit_status import_overridden(const char *mesh, const char *overrides, model *m, vit_text *why) {
     char text[1024];
-    scene s;
-    (void)snprintf(text, sizeof text,
-                   "meshes = ( { file = \"%s\"; } ); camera: { keys = ( { eye = (0, 1, 3); target = (0, 1, 0); } ); };\n"
-                   "materials = ( %s );\n",
-                   mesh, overrides);
-    put(FILE_OF("m.cfg"), text);
-    warnings[0] = '\0';
-    assert_int_equal(scene_read(FILE_OF("m.cfg"), &s, why), VIT_OK);
-    const vit_status status = model_import(&s, false, remember, NULL, m, why);
-    scene_free(&s);
-    return status;
+    (void)snprintf(text, sizeof text, "materials = ( %s );", overrides);
+    return import_in_scene(mesh, text, m, why);
 }
 
 /* Which materials have triangles, as "abc". */
@@ -86,7 +52,7 @@ static const struct {
     {"d 1", "d 0.7", "d 1", "{ name = \"b\"; cutoff = 0.9; }", "ac", HOLES},
 };
 
-static void put_obj(const char *a, const char *b, const char *c) {
+static void put_three(const char *a, const char *b, const char *c) {
     char text[1024];
     (void)snprintf(text, sizeof text, "newmtl a\nKd 1 1 1\n%s\nnewmtl b\nKd 1 1 1\n%s\nnewmtl c\nKd 1 1 1\n%s\n", a, b, c);
     put(FILE_OF("m.mtl"), text);
@@ -101,8 +67,8 @@ static void no_file_vanishes_for_its_transparency(void **state) {
         model m;
         vit_text why = {""};
         char names[4];
-        put_obj(files[i].a, files[i].b, files[i].c);
-        if (import_file("m.obj", files[i].overrides, &m, &why) != VIT_OK)
+        put_three(files[i].a, files[i].b, files[i].c);
+        if (import_overridden("m.obj", files[i].overrides, &m, &why) != VIT_OK)
             fail_msg("row %zu: %s", i, why.text);
         kept(&m, names);
         if (strcmp(names, files[i].kept) != 0)
@@ -119,8 +85,8 @@ static void a_mapped_opacity_of_0_is_its_map(void **state) {
     vit_text why = {""};
     char names[4];
     (void)state;
-    put_obj("d 1", "d 0\nmap_d mask.png", "d 0");
-    if (import_file("m.obj", "", &m, &why) != VIT_OK)
+    put_three("d 1", "d 0\nmap_d mask.png", "d 0");
+    if (import_overridden("m.obj", "", &m, &why) != VIT_OK)
         fail_msg("%s", why.text);
     kept(&m, names);
     assert_string_equal(names, "ab");
@@ -133,11 +99,11 @@ static void a_scene_file_that_hides_everything_is_refused_with_the_cure(void **s
     model m;
     vit_text why = {""};
     (void)state;
-    put_obj("Tr 1", "Tr 1", "Tr 1");
+    put_three("Tr 1", "Tr 1", "Tr 1");
     assert_int_equal(
-        import_file("m.obj",
-                    "{ name = \"a\"; cutoff = 0.5; }, { name = \"b\"; cutoff = 0.5; }, { name = \"c\"; cutoff = 0.5; }", &m,
-                    &why),
+        import_overridden("m.obj",
+                          "{ name = \"a\"; cutoff = 0.5; }, { name = \"b\"; cutoff = 0.5; }, { name = \"c\"; cutoff = 0.5; }",
+                          &m, &why),
         VIT_BAD_INPUT);
     assert_non_null(strstr(why.text, "transparency is not simulated; 'cutoff = 0'"));
 }
@@ -188,19 +154,13 @@ static void a_collada_transparency_of_0_is_opaque(void **state) {
         char text[4096], names[4];
         (void)snprintf(text, sizeof text, collada, rows[i].a, rows[i].b);
         put(FILE_OF("m.dae"), text);
-        if (import_file("m.dae", "", &m, &why) != VIT_OK)
+        if (import_overridden("m.dae", "", &m, &why) != VIT_OK)
             fail_msg("row %zu: %s", i, why.text);
         kept(&m, names);
         if (strcmp(names, rows[i].kept) != 0 || !strstr(warnings, rows[i].warning))
             fail_msg("row %zu: materials %s are left, not %s\n%s", i, names, rows[i].kept, warnings);
         model_free(&m);
     }
-}
-
-static int make_folder(void **state) {
-    (void)state;
-    (void)mkdir(FOLDER, 0777);
-    return 0;
 }
 
 int main(void) {
