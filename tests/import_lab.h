@@ -202,6 +202,49 @@ static inline void put_obj(const char *mtl) {
     put(FILE_OF("quad.obj"), "mtllib quad.mtl\n" OBJ_QUAD "usemtl m\n" OBJ_FACES);
 }
 
+/* ---- materials ---- */
+
+/* The mesh through a scene whose `materials` are `overrides`; it must be good. */
+static inline void import_scene(const char *mesh, const char *overrides, model *m) {
+    vit_text why;
+    if (import_in_scene(mesh, overrides, m, &why) != VIT_OK)
+        fail_msg("%s", why.text);
+}
+
+static inline bool near3(const float got[3], double x, double y, double z) {
+    const double want[3] = {x, y, z};
+    for (int k = 0; k < 3; k++)
+        if (!(fabs((double)got[k] - want[k]) < 1e-5))
+            return false;
+    return true;
+}
+
+static inline bool is_matt(const model_material *m) {
+    return m->kind == VIT_MATTE && near3(m->specular, 0, 0, 0) && m->exponent == 1.0f && m->ior == 1.0f;
+}
+
+static inline bool real_scene(const char *file, model *m) {
+    const char *folder = getenv("VITRINE_SCENES");
+    char path[512];
+    vit_text why = {{0}};
+    scene s;
+    (void)snprintf(path, sizeof path, "%s/%s", folder ? folder : "../shared/scenes", file);
+    if (access(path, R_OK) != 0)
+        return false;
+    assert_int_equal(scene_for_mesh(path, &s, &why), VIT_OK);
+    assert_int_equal(model_import(&s, false, remember, NULL, m, &why), VIT_OK);
+    scene_free(&s);
+    return true;
+}
+
+static inline const model_material *named(const model *m, const char *name) {
+    for (int i = 0; i < m->material_count; i++)
+        if (!strcmp(m->materials[i].name, name))
+            return &m->materials[i];
+    fail_msg("there is no material '%s'", name);
+    return NULL;
+}
+
 #define T(name) cmocka_unit_test(name)
 
 #endif
