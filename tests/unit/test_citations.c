@@ -6,142 +6,14 @@
  * in it. A year in a comment is that of a source, whose name stands beside it: [Name Year] of METHODS.md. Texts are read with
  * line ends and comment marks as blanks, so that a citation may run over a line's end. "name() of FOLDER/FILE" is a function
  * that is there. */
-#include "test_folder.h"
+#include "repository_texts.h"
 #include <ctype.h>
-#include <dirent.h>
 #include <fnmatch.h>
 #include <regex.h>
-#include <stdbool.h>
 #include <strings.h>
 
-#define MOST_FILES 2048u
 #define METHOD "kernels/METHODS.md"
 #define SELF "tests/unit/test_citations.c" /* has what must be found wrong */
-
-typedef struct file {
-    char path[256];
-    char *text;    /* line ends and comment marks are blanks */
-    char *comment; /* the same but for what is no comment: 0x01 */
-    char *raw;
-} file;
-
-typedef struct library {
-    file files[MOST_FILES];
-    size_t count;
-    unsigned faults;
-    char last[512]; /* the last fault */
-    bool quiet;
-} library;
-
-/* ---- reading ---- */
-
-static bool ends_with(const char *path, const char *ending) {
-    const size_t n = strlen(path), e = strlen(ending);
-    return n >= e && strcmp(path + n - e, ending) == 0;
-}
-
-static bool is_code(const char *path) {
-    return ends_with(path, ".c") || ends_with(path, ".h") || ends_with(path, ".cl") || ends_with(path, ".clh");
-}
-
-static bool is_text(const char *path) {
-    return is_code(path) || ends_with(path, ".md") || ends_with(path, ".mk") || ends_with(path, ".sh") ||
-           ends_with(path, ".cfg") || ends_with(path, "Makefile");
-}
-
-/* Blanks what is between comments with 0x01. */
-static void keep_comments(char *s) {
-    while (*s) {
-        if (s[0] == '/' && s[1] == '*') {
-            for (s += 2; *s && !(s[0] == '*' && s[1] == '/');)
-                s++;
-            for (int i = 0; i < 2 && *s; i++)
-                *s++ = 1;
-        } else if (s[0] == '/' && s[1] == '/') {
-            while (*s && *s != '\n')
-                s++;
-        } else if (*s == '"' || *s == '\'') {
-            const char quote = *s;
-            for (*s++ = 1; *s && *s != quote && *s != '\n'; *s++ = 1)
-                if (*s == '\\' && s[1] && s[1] != '\n')
-                    *s++ = 1;
-            if (*s == quote)
-                *s++ = 1;
-        } else
-            *s++ = 1;
-    }
-}
-
-static void blank_line_ends(char *s) {
-    for (; *s; s++) {
-        if (*s != '\n')
-            continue;
-        *s = ' ';
-        char *t = s + 1;
-        while (*t == ' ' || *t == '\t')
-            *t++ = ' ';
-        if ((*t == '*' && t[1] != '/') || *t == '#')
-            *t = ' ';
-    }
-}
-
-static void add(library *l, const char *path, const char *text) {
-    assert_true(l->count < MOST_FILES && strlen(path) < sizeof l->files[0].path);
-    file *f = l->files + l->count++;
-    snprintf(f->path, sizeof f->path, "%s", path);
-    f->text = f->comment = f->raw = NULL;
-    if (!text)
-        return;
-    f->raw = strdup(text);
-    f->text = strdup(text);
-    f->comment = strdup(text);
-    assert_true(f->raw && f->text && f->comment);
-    keep_comments(f->comment);
-    blank_line_ends(f->comment);
-    blank_line_ends(f->text);
-}
-
-static void add_from_disc(library *l, const char *path) {
-    char *text = is_text(path) ? read_file(path, NULL) : NULL;
-    add(l, path, text);
-    free(text);
-}
-
-static void walk(library *l, const char *folder) {
-    DIR *d = opendir(folder);
-    assert_non_null(d);
-    for (struct dirent *e; (e = readdir(d)) != NULL;) {
-        char path[256];
-        struct stat s;
-        if (e->d_name[0] == '.')
-            continue;
-        assert_true((size_t)snprintf(path, sizeof path, "%s/%s", folder, e->d_name) < sizeof path);
-        if (stat(path, &s) != 0)
-            continue; /* of a test that runs at the same time */
-        if (S_ISDIR(s.st_mode))
-            walk(l, path);
-        else if (S_ISREG(s.st_mode))
-            add_from_disc(l, path);
-    }
-    closedir(d);
-}
-
-static void read_repository(library *l) {
-    static const char *const folders[] = {"bake", "kernels", "runtime", "include", "tests", "findings"};
-    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
-        walk(l, folders[i]);
-    add_from_disc(l, "README.md");
-    add_from_disc(l, "Makefile");
-}
-
-static void release(library *l) {
-    for (size_t i = 0; i < l->count; i++) {
-        free(l->files[i].raw);
-        free(l->files[i].text);
-        free(l->files[i].comment);
-    }
-    free(l);
-}
 
 /* ---- what is wrong ---- */
 
@@ -163,23 +35,6 @@ static regex_t compiled(const char *pattern) {
 
 static int length_of(const regmatch_t *m) {
     return (int)(m->rm_eo - m->rm_so);
-}
-
-static const file *find_exactly(const library *l, const char *path) {
-    for (size_t i = 0; i < l->count; i++)
-        if (strcmp(l->files[i].path, path) == 0)
-            return l->files + i;
-    return NULL;
-}
-
-/* A file by its path from the folder of the file that cites it, or from the root. */
-static const file *find_cited(const library *l, const file *from, const char *name, int length) {
-    char path[512];
-    const char *slash = strrchr(from->path, '/');
-    snprintf(path, sizeof path, "%.*s%.*s", slash ? (int)(slash - from->path) + 1 : 0, from->path, length, name);
-    const file *found = find_exactly(l, path);
-    snprintf(path, sizeof path, "%.*s", length, name);
-    return found ? found : find_exactly(l, path);
 }
 
 /* The first line that is so a heading, and where the next of its level or above begins; a log's heading may begin with a date.
