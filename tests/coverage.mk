@@ -2,7 +2,7 @@
 # These are the tests that run most of them; then every pack that they baked is played, and every view in every format, which
 # test_same_bits does in many more ways.
 COVERED := $(addprefix unit/test_,pack pack_forged pack_save pack_derive byte_order faults player work_kernel) \
-           $(addprefix golden/test_,host effects tools no_allocation budget work_counts soak) fuzz/test_fuzz_corpus \
+           $(addprefix golden/test_,host effects bake_tool play_tool no_allocation budget work_counts soak) fuzz/test_fuzz_corpus \
            $(addprefix numeric/test_,framebuffers camera photons light_power clusters attributes)
 # Names of a list in vitrine_frame.h, as the player's options have them.
 COVERED_VIEWS = $(call NAMES_OF,VIT_VIEWS)

@@ -26,7 +26,7 @@ $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
     vfprintf puts putchar fputs fwrite write __printf_chk __fprintf_chk
 # Put before libc's by LD_PRELOAD: signals at counted moments.
-$(addprefix $(B)/tests/golden/test_,killed tools): $(B)/tests/signal_at.so
+$(addprefix $(B)/tests/golden/test_,killed bake_tool): $(B)/tests/signal_at.so
 $(B)/tests/signal_at.so: tests/preload/signal_at.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(WARN) -O2 -fPIC -shared $< -o $@

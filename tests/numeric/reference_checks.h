@@ -1,4 +1,5 @@
-/* What tests of the reference with effects share: checks whose worst is a row of the catalogue, and a floor with a camera above.
+/* What tests of the reference with effects share: checks whose worst is a row of the catalogue, and a floor with a camera
+ * above.
  *
  * What is drawn at random is held to five times the standard error that the reference states, and that error to a bound, so
  * that no check passes for its noise. */
