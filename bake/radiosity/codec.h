@@ -1,0 +1,53 @@
+/* codec.c: transfer matrices as few bytes, from which the product with the patches' light is computed directly. The layout is
+ * vit_transfer's (records.clh). */
+#ifndef VIT_RADIOSITY_CODEC_H
+#define VIT_RADIOSITY_CODEC_H
+
+#include "radiosity/transfer_matrix.h"
+
+#define CODEC_KEEP_BC1 0.04 /* of the entries, that are kept exactly (Shcherbakov 2017) */
+#define CODEC_KEEP 0.06     /* that are kept beside the part of low rank */
+#define CODEC_RANK 64u      /* of that part */
+#define CODEC_RANK_MOST 512u
+#define CODEC_PATCHES_MOST 65536u
+
+typedef struct codec_input {
+    const transfer_matrix *matrix;
+    const float *area; /* count: what a row's error weighs; NULL: all the same */
+    uint32_t codec;    /* VIT_TRANSFER_* */
+    double keep;       /* BC1, SPARSE_LOW_RANK: share of the entries that is kept apart; 0: none, < 0: as above */
+    uint32_t rank;     /* SPARSE_LOW_RANK: a multiple of 16, or 0 for CODEC_RANK; at most CODEC_RANK_MOST */
+    unsigned threads;  /* 0: all cores; changes no byte */
+} codec_input;
+
+/* A coded matrix in the baker's byte order. */
+typedef struct coded {
+    uint32_t *words; /* vit_transfer and what follows it */
+    size_t count;
+} coded;
+
+/* VIT_BAD_INPUT: there is no such codec, or the matrix has more patches or the code more words than it can hold. VIT_FAILED:
+ * out of memory. On failure nothing is left to free. */
+vit_status codec_encode(const codec_input *in, coded *out, vit_text *why);
+void coded_free(coded *c);
+/* VIT_BAD_INPUT: the words are no coded matrix, or a part is not where it belongs: nothing below may be called then. */
+vit_status codec_check(const uint32_t *words, size_t count, vit_text *why);
+
+/* Row `row` of a channel of a good code: `patches` floats. */
+void codec_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
+/* y = S x, in the order of operations that transfer_product.clh states, to the bit; y may be a little below 0. x and y: a plane
+ * a channel of `stride` floats each, 0 from `patches` on (in x, they must be). VIT_FAILED: out of memory. */
+vit_status codec_product(const uint32_t *words, const float *x, float *y, unsigned threads, vit_text *why);
+
+/* How wrong a code is. */
+typedef struct codec_errors {
+    double bytes;
+    double mean, most, sum; /* of the differences of entries, all channels */
+    double light;           /* of S E for the given E: root of the sum of squares, by area, over that of S E itself */
+} codec_errors;
+
+/* lights: `count` times E, each 3 numbers a patch. VIT_FAILED: out of memory. */
+vit_status codec_judge(const codec_input *in, const coded *c, const float *lights, uint32_t count, codec_errors *out,
+                       vit_text *why);
+
+#endif

@@ -1,0 +1,89 @@
+/* What the codecs share: where a code's parts are, and numbers as codes of floats' bits. */
+#ifndef VIT_RADIOSITY_CODEC_PARTS_H
+#define VIT_RADIOSITY_CODEC_PARTS_H
+
+#include "radiosity/codec.h"
+#include "vitrine_pack.h"
+
+#include <string.h>
+
+#define PANEL VIT_TRANSFER_ROWS
+#define HEADER_WORDS (sizeof(vit_transfer) / sizeof(vit_u32))
+#define STEP_FLOAT16 (1u << 12)
+#define BITS_MOST 0x7f7fffffu /* of a finite float */
+
+static inline uint32_t float_bits(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline float bits_float(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* The number of a code, as transfer_product.clh has it. */
+static inline float decoded(uint32_t base, uint32_t step, uint32_t code) {
+    return code ? bits_float(base + code * step) : 0.0f;
+}
+
+/* The code 1..most of a number > 0 nearest to its bits, or 0 where the number is nearer to zero than to that of code 1. */
+static inline uint32_t encoded(float x, uint32_t base, uint32_t step, uint32_t most) {
+    const float least = bits_float(base + step);
+    if (!(x > 0.5f * least) || step == 0)
+        return 0;
+    const int64_t above = (int64_t)float_bits(x) - (int32_t)base + step / 2;
+    const int64_t code = above > 0 ? above / step : 0;
+    return code < 1 ? 1 : code > most ? most : (uint32_t)code;
+}
+
+static inline const vit_transfer *header_of(const uint32_t *words) {
+    return (const vit_transfer *)(const void *)words;
+}
+
+/* Where the parts of a code are, for codec, patches, rank, and the words that sparse entries take; false: too many words. */
+bool codec_lay_out(uint32_t codec, uint32_t patches, uint32_t rank, uint64_t sparse_words, vit_transfer *out);
+static inline uint32_t codec_stride(uint32_t patches) {
+    return (patches + PANEL - 1) / PANEL * PANEL;
+}
+
+/* ---- a file each ---- */
+
+/* Codes of the dense part (codec_dense.c): scale, dense. */
+void codec_encode_dense(const codec_input *in, uint32_t *words);
+/* Of columns first .. first + count - 1 of a row; the part's alone. */
+void codec_dense_row(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t first, uint32_t count, float *out);
+
+/* codec_bc1.c. `keep`: entries that are kept apart, the picture has nothing to say of them: n x n. */
+void codec_encode_bc1(const codec_input *in, const uint8_t *keep, uint32_t *words);
+void codec_bc1_row(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t first, uint32_t count, float *out);
+
+/* codec_sparse.c: entries kept apart. Marks in->keep of them, the largest in what they do to reflected light; false: out of
+ * memory. */
+bool codec_choose(const codec_input *in, double share, uint8_t *keep);
+typedef struct sparse_shape {
+    uint32_t *place; /* a row's; stride */
+    uint32_t *slots; /* of a panel of places */
+    uint64_t words;
+    uint32_t chunks;
+} sparse_shape;
+bool codec_sparse_shape(uint32_t codec, uint32_t patches, const uint8_t *keep, sparse_shape *out);
+/* Writes panels, places, sparse, and base where codes need it. BC1: what the picture lacks. */
+void codec_encode_sparse(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words);
+/* Sum over chunk `chunk` of a row's sparse entries times x (product), and the entries added to a row. */
+float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t chunk, const float *x);
+void codec_sparse_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
+bool codec_sparse_good(const uint32_t *words);
+
+/* codec_low_rank.c: the entries that are not kept. */
+vit_status codec_encode_low_rank(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words,
+                                 vit_text *why);
+/* What `left` is multiplied by: rank numbers a channel. */
+void codec_low_rank_mixed(const uint32_t *words, const float *x, float *mixed);
+float codec_low_rank_sum(const uint32_t *words, uint32_t row, uint32_t channel, const float *mixed);
+/* The part added to a row of `patches` numbers. */
+void codec_low_rank_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
+
+#endif
