@@ -77,6 +77,8 @@ typedef struct host_lab {
     void (*wrap)(const float *coordinate, uint32_t mode, uint32_t n, float *wrapped);
     /* One of HOST_LAB_FUNCTIONS; planes of n floats in and out. */
     void (*call)(host_lab_function f, const host_lab_given *given, const float *in, uint32_t n, float *out);
+    /* The product with a coded transfer matrix, of kernels/transfer_product.clh, which has the layout of what is between. */
+    void (*transfer)(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y);
 } host_lab;
 
 /* The best for this machine; there is always one. */

@@ -206,5 +206,17 @@ static void call(host_lab_function f, const host_lab_given *given, const float *
             call_light(f, given, in, n, i, out);
 }
 
+static void transfer(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y) {
+    const uint groups = code->rank / VIT_LANES, rows = code->stride / VIT_LANES;
+    for (uint i = 0; i < groups * transfer_column_chunks(code); i++)
+        transfer_project_item(i, code, x, projected);
+    for (uint i = 0; i < 3 * groups; i++)
+        transfer_mix_item(i, code, projected, mixed);
+    for (uint i = 0; i < rows * transfer_sums(code); i++)
+        transfer_sums_item(i, code, x, mixed, sums);
+    for (uint i = 0; i < rows; i++)
+        transfer_add_item(i, code, sums, y);
+}
+
 extern const host_lab HOST_LAB;
-const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices, wrap, call};
+const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices, wrap, call, transfer};

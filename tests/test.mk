@@ -16,7 +16,7 @@ $(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_
 	$(CC) $(if $(filter release,$(config)),-O2) $(HOST_CFLAGS) -Wno-unused-function -Wno-unused-variable $(HOST_FLAGS_$*) -DVIT_LANES=8 -DHOST_ISA='"$*"' -DHOST_LAB=host_lab_$* -c $< -o $@
 
 NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
-$(NUMERIC_PROGRAMS): $(HOST_LAB)
+$(NUMERIC_PROGRAMS) $(B)/tests/unit/test_transfer_kernel: $(HOST_LAB)
 # Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
@@ -64,7 +64,7 @@ test: deps
 	@VITRINE_RESULTS=$(RESULTS) $(MAKE) $(SIDE_BY_SIDE) run-tests
 	@tests/total.sh $(RESULTS) $(RUNS:run/%=%) $(SANITIZED_PLAYS)
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_save scene scene_mistakes) fuzz/test_fuzz_corpus)
+SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_save scene scene_mistakes transfer) fuzz/test_fuzz_corpus)
 RUNS += $(filter-out $(RUNS),$(SANITIZED:%=run/build/sanitize/%))
 build-sanitized: $(SANITIZED:%=$(B)/%) $(B)/vitrine-play
 # The kernels as C, too: packs that hold each effect between them, baked by the release's baker.
