@@ -43,7 +43,7 @@ static inline cl_kernel transfer_kernel(lab *l, const char *name, const cl_mem *
 static inline transfer_device transfer_device_open(lab *l, unsigned lanes, const uint32_t *words) {
     const vit_transfer *h = (const vit_transfer *)(const void *)words;
     transfer_device d = {.code = lab_buffer(l, words, (size_t)h->words * 4),
-                         .x = lab_buffer(l, NULL, 12 * (size_t)h->stride),
+                         .x = lab_buffer(l, NULL, 16 * (size_t)h->stride),
                          .projected = lab_buffer(l, NULL, 4 * transfer_projected_floats(h)),
                          .mixed = lab_buffer(l, NULL, 12 * (size_t)h->rank + 4),
                          .sums = lab_buffer(l, NULL, 4 * transfer_sums_floats(h)),

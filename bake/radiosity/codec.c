@@ -196,7 +196,7 @@ typedef struct product {
 
 static float row_sum(const product *p, uint32_t row, uint32_t channel) {
     const vit_transfer *h = header_of(p->words);
-    const float *x = p->x + (size_t)channel * h->stride;
+    const float *x = p->x + channel;
     float all = 0.0f;
     for (uint32_t k = 0; k < h->dense_chunks; k++) {
         const uint32_t first = k * VIT_TRANSFER_CHUNK, left = h->stride - first;
@@ -204,7 +204,7 @@ static float row_sum(const product *p, uint32_t row, uint32_t channel) {
         float s[VIT_TRANSFER_CHUNK], sum = 0.0f;
         dense_row(p->words, row, channel, first, count, s);
         for (uint32_t j = 0; j < count; j++)
-            sum = fmaf(s[j], x[first + j], sum);
+            sum = fmaf(s[j], x[4 * (size_t)(first + j)], sum);
         all += sum;
     }
     for (uint32_t k = 0; k < h->sparse_chunks; k++)

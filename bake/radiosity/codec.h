@@ -35,8 +35,9 @@ vit_status codec_check(const uint32_t *words, size_t count, vit_text *why);
 
 /* Row `row` of a channel of a good code: `patches` floats. */
 void codec_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
-/* y = S x, in the order of operations that transfer_product.clh states, to the bit; y may be a little below 0. x and y: a plane
- * a channel of `stride` floats each, 0 from `patches` on (in x, they must be). VIT_FAILED: out of memory. */
+/* y = S x, in the order of operations that transfer_product.clh states, to the bit; y may be a little below 0. x: four numbers
+ * a column, the last of them not looked at, 0 from column `patches` on; y: a plane a channel; both for `stride` patches.
+ * VIT_FAILED: out of memory. */
 vit_status codec_product(const uint32_t *words, const float *x, float *y, unsigned threads, vit_text *why);
 
 /* How wrong a code is. */

@@ -227,7 +227,7 @@ void codec_low_rank_mixed(const uint32_t *words, const float *x, float *mixed) {
             for (uint32_t first = 0; first < h->stride; first += VIT_TRANSFER_CHUNK) {
                 float sum = 0.0f;
                 for (uint32_t j = first; j < h->stride && j < first + VIT_TRANSFER_CHUNK; j++)
-                    sum = fmaf(right_at(words, j, k), bits_float(words[h->right_scale + j]) * x[c * h->stride + j], sum);
+                    sum = fmaf(right_at(words, j, k), bits_float(words[h->right_scale + j]) * x[4 * (size_t)j + c], sum);
                 z[k] += sum;
             }
         }

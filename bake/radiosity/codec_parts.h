@@ -72,7 +72,7 @@ typedef struct sparse_shape {
 bool codec_sparse_shape(uint32_t codec, uint32_t patches, const uint8_t *keep, sparse_shape *out);
 /* Writes panels, places, sparse, and base where codes need it. BC1: what the picture lacks. */
 void codec_encode_sparse(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words);
-/* Sum over chunk `chunk` of a row's sparse entries times x (product), and the entries added to a row. */
+/* Sum over chunk `chunk` of a row's sparse entries times every fourth of x, and the entries added to a row. */
 float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t chunk, const float *x);
 void codec_sparse_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
 bool codec_sparse_good(const uint32_t *words);

@@ -237,7 +237,7 @@ float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, ui
     for (uint32_t k = chunk * VIT_TRANSFER_CHUNK; k < slots && k < (chunk + 1) * VIT_TRANSFER_CHUNK; k++) {
         uint32_t column;
         const float s = kept(words, place, k, channel, &column);
-        sum = fmaf(s, x[column], sum);
+        sum = fmaf(s, x[4 * (size_t)column], sum);
     }
     return sum;
 }

@@ -1,13 +1,14 @@
 #include "radiosity/matrix_order.h"
 #include "common/fail.h"
 #include "common/parallel.h"
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SUMS 16u   /* that a distance is summed in, so that vectors can do it */
-#define LOOK 1024u /* entries between two looks at whether the row is too far already */
-#define GROUP 32u  /* rows that a thread takes at a time */
+#define SUMS 16u  /* that a distance is summed in, so that vectors can do it */
+#define LOOK 256u /* entries between two looks at whether the row is too far already */
+#define GROUP 32u /* rows that a thread takes at a time */
 
 typedef struct nearest {
     float distance;
@@ -37,9 +38,9 @@ static float distance(const float *a, const float *b, size_t width, float most) 
         const size_t end = width - i < LOOK ? width : i + LOOK;
         for (; i + SUMS <= end; i += SUMS)
             for (uint32_t k = 0; k < SUMS; k++)
-                s[k] += a[i + k] < b[i + k] ? b[i + k] - a[i + k] : a[i + k] - b[i + k];
+                s[k] += fabsf(a[i + k] - b[i + k]);
         for (uint32_t k = 0; i < end; k++, i++)
-            s[k] += a[i] < b[i] ? b[i] - a[i] : a[i] - b[i];
+            s[k] += fabsf(a[i] - b[i]);
         if (sum_of(s) > most)
             break; /* the rest only adds to it */
     }

@@ -10,7 +10,7 @@ static const uint32_t sizes[SIZES] = {1, 3, 5, 16, 47, 300, 545};
 
 typedef struct sample {
     coded code[VIT_TRANSFER_COUNT];
-    float x[3 * LARGEST], y[VIT_TRANSFER_COUNT][3 * LARGEST];
+    float x[4 * LARGEST], y[VIT_TRANSFER_COUNT][3 * LARGEST];
     uint32_t stride;
 } sample;
 
@@ -19,8 +19,8 @@ static sample *sample_make(uint32_t n) {
     transfer_lab l = transfer_lab_open(n, factor_room);
     transfer_matrix m = transfer_lab_matrix(&l, 3, 0);
     s->stride = codec_stride(n);
-    for (uint32_t i = 0; i < 3 * s->stride; i++)
-        s->x[i] = i % s->stride < n ? 10.0f * unit_float(pcg(i)) : 0.0f;
+    for (uint32_t i = 0; i < 4 * n; i++)
+        s->x[i] = 10.0f * unit_float(pcg(i));
     for (uint32_t k = 0; k < VIT_TRANSFER_COUNT; k++) {
         const codec_input in = {.matrix = &m, .area = l.area, .codec = k, .keep = 0.6, .rank = n > 100 ? 48 : 16};
         assert_int_equal(codec_encode(&in, &s->code[k], NULL), VIT_OK);
@@ -66,7 +66,8 @@ static void on_the_device_it_has_them_at_every_number_of_lanes(void **state) {
                 float y[3 * LARGEST];
                 const size_t bytes = 12 * (size_t)s->stride;
                 transfer_device d = transfer_device_open(&l, lab_lanes[w], s->code[k].words);
-                lab_check(clEnqueueWriteBuffer(l.queue, d.x, CL_TRUE, 0, bytes, s->x, 0, NULL, NULL), "clEnqueueWriteBuffer");
+                lab_check(clEnqueueWriteBuffer(l.queue, d.x, CL_TRUE, 0, bytes / 3 * 4, s->x, 0, NULL, NULL),
+                          "clEnqueueWriteBuffer");
                 transfer_device_run(&l, &d);
                 lab_read(&l, d.y, y, bytes);
                 if (memcmp(y, s->y[k], bytes) != 0)
