@@ -41,7 +41,7 @@ $(B)/tests/golden/test_public_header: $(B)/vitrine.pc
 # The player's own judgement.
 $(B)/tests/unit/test_budget_verdict: $(addprefix $(B)/runtime/play/,budget.o failure.o machine_load.o pacing.o report.o times.o)
 # It casts rays with the tests' laboratory.
-$(B)/tests/bench/bench_octree: private LIBS_COST += -lcmocka
+$(B)/tests/bench/bench_octree $(B)/tests/bench/bench_transfer: private LIBS_COST += -lcmocka
 $(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
