@@ -19,7 +19,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 5u
+#define VIT_PACK_VERSION 6u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
@@ -46,10 +46,17 @@
     X(TEXR, vit_texture, s->textures)                                                                                          \
     X(MIPS, vit_mip, s->mips)                                                                                                  \
     X(ATLS, vit_u32, s->texels)                                                                                                \
-    X(SIDE, vit_u32, s->cells ? 2 * (uint64_t)s->triangles : 0)                                                                \
+    X(SIDE, vit_u32, s->cells || s->receiver_cells ? 2 * (uint64_t)s->triangles : 0)                                           \
     X(CELL, vit_cell, s->cells)                                                                                                \
     X(EMIT, vit_light_sample, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                      \
     X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                  \
+    X(RCEL, vit_receiver_cell, s->receiver_cells)                                                                              \
+    X(RSPL, vit_receiver_split, s->receiver_splits)                                                                            \
+    X(RECV, vit_receiver, s->receivers)                                                                                        \
+    X(BGRP, vit_basis_group, (uint64_t)s->receivers / VIT_BASIS_GROUP * s->basis_lights)                                       \
+    X(BWRD, vit_u32, s->basis_words)                                                                                           \
+    X(BCOE, vit_basis_coefficient, s->basis_coefficients)                                                                      \
+    X(BFRM, vit_basis_frame, (uint64_t)s->frames * s->basis_lights)                                                            \
     X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)
 

@@ -25,6 +25,12 @@ vit_pack_check vit_pack_check_GEOM, vit_pack_check_BVHN;
 vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_TEXR,
     vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL, vit_pack_check_EMIT,
     vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
+/* pack_check_basis.c: receivers, and what light that moves does to them. */
+vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vit_pack_check_BGRP, vit_pack_check_BWRD,
+    vit_pack_check_BCOE, vit_pack_check_BFRM;
+/* Irradiance of any receiver by a light of the basis with an intensity of 1, at most; *still: by all other light, W/m2. Both 0
+ * without the effect BASIS. */
+double vit_pack_basis_bound(const vit_pack *p, double *still);
 /* pack_check_brightness.c: all sections together, after their own checks: whether light stays finite up to the pixel. */
 vit_pack_check vit_pack_check_brightness;
 /* A traced photon's power over its disc, W/m2, at most; 0 of lights without paths. */

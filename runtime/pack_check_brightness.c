@@ -54,15 +54,16 @@ static double of_stored_photons(const vit_pack *p) {
     return sum;
 }
 
-/* Irradiance by the frame's lights, W/m2: straight, and by the photons that are traced. */
-static void of_lights(const vit_pack *p, vit_u32 frame, double least2, double *direct, double *traced) {
+/* Irradiance by the frame's lights, W/m2: straight, and by the photons that are traced; *shining: their intensities. */
+static void of_lights(const vit_pack *p, vit_u32 frame, double least2, double *direct, double *traced, double *shining) {
     const vit_scene *s = p->scene;
     const vit_light *lights = p->section[VIT_SECTION_LITE];
-    *direct = *traced = 0.0;
+    *direct = *traced = *shining = 0.0;
     for (vit_u32 i = 0; i < s->lights; i++) {
         const vit_light *l = VIT_RECORD(vit_light, lights, (size_t)frame * s->lights + i);
         const bool even = l->kind == VIT_LIGHT_DIRECTIONAL || l->falloff == VIT_FALLOFF_WINDOW;
         const double most = largest(l->intensity);
+        *shining += most;
         *direct += even ? most : most / least2;
         if (l->path_count > 0)
             *traced += vit_pack_photon_bound(s, l) * l->path_count * s->bounces;
@@ -72,16 +73,17 @@ static void of_lights(const vit_pack *p, vit_u32 frame, double least2, double *d
 vit_status vit_pack_check_brightness(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
     const float least = s->ray_offset * 0.0625f, least2 = least * least; /* as the kernels have it */
-    double peak, own, direct, traced;
+    double peak, own, direct, traced, shining, still;
     if ((s->lights > 0 || s->area_samples > 0) && !(least2 >= FLT_MIN))
         return vit_pack_refuse(why, "section META: lights, and a ray_offset of %g m: its square vanishes",
                                (double)s->ray_offset);
     look_at_materials(p, &peak, &own);
-    const double points = of_points(p, least2), stored = of_stored_photons(p);
+    const double points = of_points(p, least2), stored = of_stored_photons(p), basis = vit_pack_basis_bound(p, &still);
     for (vit_u32 frame = 0; frame < s->frames; frame++) {
         const double exposure = VIT_RECORD(vit_camera, (const vit_camera *)p->section[VIT_SECTION_CAMS], frame)->exposure;
-        of_lights(p, frame, least2, &direct, &traced);
-        const double seen = (direct + points) * peak + (stored + traced) * LEAST_AREA_INVERSE * (2.0 / PI) + own;
+        of_lights(p, frame, least2, &direct, &traced, &shining);
+        const double seen =
+            (direct + points) * peak + ((stored + traced) * LEAST_AREA_INVERSE + still + basis * shining) * (2.0 / PI) + own;
         const double most = seen * 2.0 * s->copies * (exposure > 1.0 ? exposure : 1.0);
         if (!(most <= MOST_LIGHT))
             return vit_pack_refuse(

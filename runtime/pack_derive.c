@@ -18,6 +18,8 @@ enum {
     MAX_PATHS = 1000000,
     MAX_BOUNCES = 32,
     MAX_PHOTONS = 1 << 25,
+    MAX_RECEIVERS = 1 << 24,
+    MAX_BASIS = 1 << 28,
     MAX_SLICES = 4096,
     MAX_KEY_BITS = 30, /* 2^25 mask words, 128 MiB, for the last level of the hierarchy */
     BITS_A_LEVEL = 5,  /* one 32-bit mask word tells a node's children */
@@ -47,6 +49,12 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"paths", s->paths, 0, MAX_PATHS},
         {"baked", s->baked, 0, MAX_PHOTONS},
         {"cells", s->cells, 0, VIT_SIDE_CELL},
+        {"receiver_cells", s->receiver_cells, 0, VIT_SIDE_CELL},
+        {"receiver_splits", s->receiver_splits, 0, VIT_SIDE_CELL},
+        {"receivers", s->receivers, 0, MAX_RECEIVERS},
+        {"basis_lights", s->basis_lights, 0, s->lights},
+        {"basis_words", s->basis_words, 0, MAX_BASIS},
+        {"basis_coefficients", s->basis_coefficients, 0, MAX_BASIS},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
         {"area_samples", s->area_samples, 0, VIT_MAX_LIGHT_SAMPLES},
         {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},
@@ -60,6 +68,8 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
             return refuse_count(why, counts[i].name, counts[i].least, counts[i].most, counts[i].value);
     if (s->copies & (s->copies - 1))
         return vit_fail(why, VIT_BAD_INPUT, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
+    if (s->receivers % VIT_BASIS_GROUP != 0)
+        return vit_fail(why, VIT_BAD_INPUT, "receivers must be a multiple of %u, got %u", VIT_BASIS_GROUP, s->receivers);
     if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64)
         return vit_fail(why, VIT_BAD_INPUT, "tile must be 8, 16, 32 or 64, got %u", s->tile);
     return VIT_OK;

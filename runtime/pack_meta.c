@@ -61,7 +61,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return all_zero(s->pad, 5) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
+    return all_zero(s->pad, 3) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -107,6 +107,15 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
     if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
         return vit_pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
+    if (photons && (e & VIT_BIT(BASIS)))
+        return vit_pack_refuse(why, "section META: effects PHOTONS and BASIS exclude each other");
+    const bool basis = e & VIT_BIT(BASIS), relight = e & VIT_BIT(RELIGHT);
+    if ((s->receivers > 0) != basis || (s->receiver_cells > 0) != basis || (s->receiver_splits > 0 && !basis))
+        return vit_pack_refuse(why, "section META: %u receivers, %u cells and %u splits contradict the effect BASIS",
+                               s->receivers, s->receiver_cells, s->receiver_splits);
+    if ((s->basis_lights > 0) != relight || ((s->basis_words > 0 || s->basis_coefficients > 0) && !relight))
+        return vit_pack_refuse(why, "section META: %u lights, %u words and %u coefficients contradict the effect RELIGHT",
+                               s->basis_lights, s->basis_words, s->basis_coefficients);
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
         return vit_pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT",
                                s->area_samples, s->sky_samples);

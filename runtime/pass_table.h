@@ -16,7 +16,8 @@
 /* What the makers of indirect light read: of all of them (kernels/indirect.cl, INDIRECT_PARAMETERS). */
 #define ARGS_INDIRECT                                                                                                          \
     B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(albedo), B(position),       \
-        B(normal), B(accept), B(inverse_area)
+        B(normal), B(accept), B(inverse_area), B(triangles), B(hit_triangle), B(sides), B(receiver_cells), B(receiver_splits), \
+        B(receivers), B(relit)
 
 #define ARGS_ROUND B(cameras), V(frame), V(round), V(layers), B(active)
 
@@ -63,6 +64,8 @@
     X(splat_buckets, ON(BUCKETS), EACH, GROUP_PER_LEVEL_NODE, LAST, W(buckets) | W(list_count) | W(counters), B(scene),        \
       V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds), B(list_first),        \
       B(list_count), B(list), B(counters), B(buckets), ARGS_WORK)                                                              \
+    X(relight, ON(RELIGHT), FIRST, PER_RELIT, ONCE, W(relit), B(scene), V(frame), B(lights), B(basis_groups), B(basis_words),  \
+      B(basis_coefficients), B(basis_frames), B(receivers), B(relit), ARGS_WORK)                                               \
     X(estimate_all, ON(INDIRECT) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), ARGS_INDIRECT, B(indirect), ARGS_WORK)       \
     X(estimate_sparse, ON(SPARSE), EACH, PER_COARSE, ONCE, W(coarse), ARGS_INDIRECT, B(coarse), ARGS_WORK)                     \
     X(interpolate, ON(SPARSE), EACH, PER_BLOCK, ONCE, W(indirect) | W(flags), B(scene), B(cameras), V(frame), B(keys),         \

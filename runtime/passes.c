@@ -166,6 +166,9 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, u
     case PER_PHOTON:
         n = s->photons;
         break;
+    case PER_RELIT:
+        n = s->receivers / 2 / l->lanes;
+        break;
     case PER_MASK_WORD:
         n = s->mask_words > VIT_COUNTER_COUNT ? s->mask_words : VIT_COUNTER_COUNT;
         break;

@@ -55,8 +55,15 @@ typedef struct vit_launch {
     X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                            \
     X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                        \
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \
-    X(sides, ON(ZONES) | ON(AREA), SIDE, s->triangles * (uint64_t)8)                                                           \
+    X(sides, ON(ZONES) | ON(AREA) | ON(BASIS), SIDE, s->triangles * (uint64_t)8)                                               \
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                          \
+    X(receiver_cells, ON(BASIS), RCEL, s->receiver_cells * sizeof(vit_receiver_cell))                                          \
+    X(receiver_splits, ON(BASIS), RSPL, s->receiver_splits * sizeof(vit_receiver_split))                                       \
+    X(receivers, ON(BASIS), RECV, s->receivers * sizeof(vit_receiver))                                                         \
+    X(basis_groups, ON(RELIGHT), BGRP, (uint64_t)s->receivers / VIT_BASIS_GROUP * s->basis_lights * sizeof(vit_basis_group))   \
+    X(basis_words, ON(RELIGHT), BWRD, (uint64_t)s->basis_words * 4)                                                            \
+    X(basis_coefficients, ON(RELIGHT), BCOE, s->basis_coefficients * sizeof(vit_basis_coefficient))                            \
+    X(basis_frames, ON(RELIGHT), BFRM, (uint64_t)s->frames * s->basis_lights * sizeof(vit_basis_frame))                        \
     X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
       VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
     X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \
@@ -89,6 +96,7 @@ typedef struct vit_launch {
     X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                     \
     X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                      \
     X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                              \
+    X(relit, ON(RELIGHT), NONE, (uint64_t)s->receivers * 16)                                                                   \
     X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                         \
     X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                            \
     X(indirect, ON(INDIRECT), NONE, (uint64_t)s->samples * 12)                                                                 \
@@ -130,6 +138,7 @@ typedef enum vit_extent {
     PER_RUN,    /* ceil(samples / run) */
     PER_PATH,   /* paths / lanes */
     PER_PHOTON,
+    PER_RELIT, /* receivers / (2 * lanes) */
     PER_MASK_WORD,
     PER_LEVEL_NODE, /* nodes of the level, at most */
     PER_PIXEL,

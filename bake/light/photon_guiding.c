@@ -1,8 +1,8 @@
 #include "light/photon_guiding.h"
 #include "common/fail.h"
 #include "common/parallel.h"
+#include "light/panes.h"
 #include "light/photon_emission.h"
-#include "light/photon_specular.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,7 +14,6 @@
 #define MOST_FRAMES 64u  /* that it may start from */
 #define MOST_HITS 8u     /* matt ones of a path */
 #define MOST_MIRRORS 16u /* and others */
-#define MOST_PANES 4u    /* of thin glass between a place and a light */
 
 typedef struct finding {
     const photon_guiding_input *in;
@@ -52,29 +51,6 @@ static photons_light source(const finding *f, uint32_t source, uint32_t frame) {
     return (photons_light){.paths = 0};
 }
 
-/* What of the light gets to p, through panes of thin glass; mirror: the part that the first pane as seen from the light
- * reflects, -1: there is none. */
-static vec3 left(const finding *f, vec3 p, const arrival *a, float *mirror) {
-    const photon_scene *s = &f->in->scene;
-    vec3 part = {1.0f, 1.0f, 1.0f};
-    float way = a->distance;
-    *mirror = -1.0f;
-    for (uint32_t k = 0; f->panes && k < MOST_PANES; k++) {
-        float t;
-        const uint32_t triangle = photon_rays_nearest(&f->rays, p, a->direction, &t);
-        if (triangle == VIT_NONE || t >= way - 2.0f * s->ray_offset)
-            return part;
-        const photon_surface at = photon_surface_at(s, p, a->direction, t, triangle);
-        if (at.material->kind != VIT_THIN_GLASS)
-            return (vec3){0.0f, 0.0f, 0.0f};
-        *mirror = specular_at_glass(a->direction, at.normal, at.face, at.back, true, at.material->ior).mirror;
-        part = vec3_scale(vec3_times(part, vec3_load(at.material->specular)), 1.0f - *mirror);
-        p = at.beyond;
-        way -= t;
-    }
-    return photon_rays_occluded(&f->rays, p, a->direction, way - 2.0f * s->ray_offset) ? (vec3){0.0f, 0.0f, 0.0f} : part;
-}
-
 /* One of the samples that a path has of a source is kept, in proportion to weights, and has all their weight. */
 static void keep(finding *f, uint32_t path, uint32_t slot, const guiding_tree_sample *s, float chance) {
     const size_t i = (size_t)slot * PATHS + path % PATHS;
@@ -101,7 +77,7 @@ static void join(finding *f, uint32_t path, uint32_t frame, const photon_surface
         if (!(light.x + light.y + light.z > 0.0f))
             continue;
         float mirror;
-        const vec3 arrived = vec3_times(light, left(f, at->position, &a, &mirror));
+        const vec3 arrived = vec3_times(light, panes_pass(&f->rays, f->panes, at->position, a.direction, a.distance, &mirror));
         guiding_tree_sample s = {.weight = arrived.x + arrived.y + arrived.z};
         if (!(s.weight > 0.0f) || (seen && mirror < 0.0f))
             continue;
@@ -157,13 +133,6 @@ static void trace(void *user, uint32_t slot) {
         d = vec3_cosine(s.face, u, v);
         o = s.position;
     }
-}
-
-static bool has_panes(const photon_scene *s) {
-    for (uint32_t i = 0; i < s->triangle_count; i++)
-        if (s->materials[s->attributes[i].material & VIT_MATERIAL_INDEX].kind == VIT_THIN_GLASS)
-            return (s->effects & VIT_BIT(GLASS)) && (s->effects & VIT_BIT(CAUSTICS));
-    return false;
 }
 
 /* Adds a round's samples. False: out of memory. */
@@ -230,7 +199,7 @@ vit_status photon_guiding_find(const photon_guiding_input *in, photon_guiding *o
     finding f = {.in = in, .sources = in->tracks->light_count + 2};
     f.groups = (f.sources + MOST_SAMPLES - 1) / MOST_SAMPLES;
     f.share = (f.sources + f.groups - 1) / f.groups;
-    f.panes = has_panes(&in->scene);
+    f.panes = (in->scene.effects & VIT_BIT(CAUSTICS)) && panes_there(&in->scene);
     f.samples = malloc((size_t)f.share * PATHS * sizeof *f.samples);
     f.sums = malloc((size_t)f.share * PATHS * sizeof *f.sums);
     f.found = calloc(f.sources, sizeof *f.found);

@@ -14,9 +14,10 @@ static const struct {
     vit_status (*run)(bake *b, vit_text *why);
     bool again; /* only if the stage before asks for it */
 } pack_stages[] = {
-    {stage_choose_shape, false}, {stage_plan, false},   {stage_guiding, false}, {stage_area_lights, false},
-    {stage_photons, false},      {stage_radius, false}, {stage_photons, true},  {stage_zones, false},
-    {stage_photons, true},       {stage_frames, false}, {stage_bounds, false},  {stage_assemble, false},
+    {stage_choose_shape, false}, {stage_plan, false},     {stage_guiding, false}, {stage_area_lights, false},
+    {stage_photons, false},      {stage_radius, false},   {stage_photons, true},  {stage_zones, false},
+    {stage_photons, true},       {stage_indirect, false}, {stage_frames, false},  {stage_bounds, false},
+    {stage_assemble, false},
 };
 
 vit_status out_of_memory(vit_text *why) {
@@ -106,6 +107,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->met);
     free(packed->area_lights);
     cells_free(&packed->cells);
+    baked_free(&packed->baked);
     plan_free(&packed->plan);
     geometry_free(&packed->coarse.geometry);
     bvh_free(&packed->coarse.bvh);

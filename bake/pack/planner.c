@@ -147,9 +147,17 @@ static uint64_t effects_of_photons(const scene *s, const plan *p) {
     return e;
 }
 
+/* Receivers get their light from what would give photons. */
+static uint64_t effects_of_basis(const scene *s, const tracks *t, const plan *p) {
+    uint64_t e = effects_of_photons(s, p) ? VIT_BIT(BASIS) : 0;
+    for (uint32_t i = 0; i < t->light_count && e; i++)
+        e |= !t->still[i] && gives_photons(s, i) ? VIT_BIT(RELIGHT) : 0;
+    return e;
+}
+
 /* What makes indirect light, and what any maker of it calls for. */
-static uint64_t effects_of_indirect(const scene *s, const plan *p) {
-    uint64_t e = effects_of_photons(s, p);
+static uint64_t effects_of_indirect(const scene *s, const tracks *t, const plan *p) {
+    uint64_t e = s->quality.indirect == INDIRECT_BASIS ? effects_of_basis(s, t, p) : effects_of_photons(s, p);
     if (e == 0)
         return 0;
     e |= VIT_BIT(INDIRECT);
@@ -248,11 +256,23 @@ static vit_status plan_lights(const plan_input *in, plan *p, vit_text *why) {
     return status == VIT_OK ? share_paths(in, NULL, p, why) : status;
 }
 
+/* Lights that would have photon paths have their light baked: who they are is all that is left of the paths. */
+static void plan_basis(const plan_input *in, plan *p) {
+    const uint32_t lights = in->tracks->light_count;
+    for (uint32_t i = 0; i < lights; i++)
+        p->baked_paths[i] += in->tracks->lights[i].path_count;
+    for (size_t i = 0; i < (size_t)in->scene->frames * lights; i++)
+        in->tracks->lights[i].path_first = in->tracks->lights[i].path_count = 0;
+    p->scene.paths = 0;
+    p->reflections = (uint32_t)in->scene->quality.bounces - 1u;
+}
+
 /* Effects that the scene calls for, then what `effects` of the scene file says of them. */
 static void plan_effects(const plan_input *in, plan *p) {
     const scene *s = in->scene;
     vit_scene *c = &p->scene;
-    c->effects = effects_of_lights(s, in->tracks) | effects_of_materials(s, in->model, p) | effects_of_indirect(s, p);
+    c->effects =
+        effects_of_lights(s, in->tracks) | effects_of_materials(s, in->model, p) | effects_of_indirect(s, in->tracks, p);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
     if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
@@ -273,7 +293,9 @@ static void plan_effects(const plan_input *in, plan *p) {
     p->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     if (!has_paths(in->tracks, p)) /* its sources were left out */
-        effects_drop(c, VIT_BIT(PHOTONS));
+        effects_drop(c, VIT_BIT(PHOTONS) | VIT_BIT(BASIS));
+    if (c->effects & VIT_BIT(BASIS))
+        plan_basis(in, p);
 }
 
 /* The photons' radius, as long as nobody has counted them. */

@@ -19,6 +19,7 @@ typedef struct plan {
     float sky_center[3], sky_radius; /* of a sphere round the scene, m */
     double lit_area;                 /* m2 of sides that light can reach */
     double free_path;                /* dark_sides.free_path, m */
+    uint32_t reflections;            /* of baked indirect light, at most; 0: as many as there are */
     effects_decided effects;
 } plan;
 

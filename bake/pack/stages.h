@@ -33,11 +33,15 @@ vit_status stage_area_lights(bake *b, vit_text *why);
 vit_status stage_photons(bake *b, vit_text *why);
 vit_status stage_radius(bake *b, vit_text *why);
 vit_status stage_zones(bake *b, vit_text *why);
+/* stages_indirect.c. */
+vit_status stage_indirect(bake *b, vit_text *why);
 /* stages_bounds.c. */
 vit_status stage_frames(bake *b, vit_text *why);
 vit_status stage_bounds(bake *b, vit_text *why);
 vit_status stage_assemble(bake *b, vit_text *why);
 
+/* The sky as a source of light for photons and receivers. */
+photons_light stages_sky_source(const pipeline *p, const pipeline_packed *out);
 /* Points out->sections and b->bounds at what there is by now. */
 void stages_point(bake *b);
 vit_status out_of_memory(vit_text *why);

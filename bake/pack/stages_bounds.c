@@ -12,22 +12,30 @@ static void measuring(void *user, const char *stage, double fraction) {
 void stages_point(bake *b) {
     const pipeline *p = b->p;
     pipeline_packed *out = b->out;
-    out->sections = (pack_sections){.data = {[VIT_SECTION_META] = &out->plan.scene,
-                                             [VIT_SECTION_CAMS] = out->tracks.cameras,
-                                             [VIT_SECTION_LITE] = out->tracks.lights,
-                                             [VIT_SECTION_GEOM] = out->geometry->triangles,
-                                             [VIT_SECTION_ATTR] = out->geometry->attributes,
-                                             [VIT_SECTION_BVHN] = out->bvh->nodes,
-                                             [VIT_SECTION_MATL] = out->plan.materials,
-                                             [VIT_SECTION_TEXR] = p->atlas.textures,
-                                             [VIT_SECTION_MIPS] = p->atlas.mips,
-                                             [VIT_SECTION_ATLS] = p->atlas.texels,
-                                             [VIT_SECTION_SIDE] = out->cells.sides,
-                                             [VIT_SECTION_CELL] = out->cells.cells,
-                                             [VIT_SECTION_EMIT] = out->area_lights,
-                                             [VIT_SECTION_SKYT] = p->sky.texels,
-                                             [VIT_SECTION_PHOT] = out->photons,
-                                             [VIT_SECTION_GOLD] = out->gold}};
+    out->sections = (pack_sections){
+        .data = {[VIT_SECTION_META] = &out->plan.scene,
+                 [VIT_SECTION_CAMS] = out->tracks.cameras,
+                 [VIT_SECTION_LITE] = out->tracks.lights,
+                 [VIT_SECTION_GEOM] = out->geometry->triangles,
+                 [VIT_SECTION_ATTR] = out->geometry->attributes,
+                 [VIT_SECTION_BVHN] = out->bvh->nodes,
+                 [VIT_SECTION_MATL] = out->plan.materials,
+                 [VIT_SECTION_TEXR] = p->atlas.textures,
+                 [VIT_SECTION_MIPS] = p->atlas.mips,
+                 [VIT_SECTION_ATLS] = p->atlas.texels,
+                 [VIT_SECTION_SIDE] = out->baked.receivers.sides ? out->baked.receivers.sides : out->cells.sides,
+                 [VIT_SECTION_RCEL] = out->baked.receivers.cells,
+                 [VIT_SECTION_RSPL] = out->baked.receivers.splits,
+                 [VIT_SECTION_RECV] = out->baked.still,
+                 [VIT_SECTION_BGRP] = out->baked.basis.groups,
+                 [VIT_SECTION_BWRD] = out->baked.basis.words,
+                 [VIT_SECTION_BCOE] = out->baked.basis.coefficients,
+                 [VIT_SECTION_BFRM] = out->baked.frames,
+                 [VIT_SECTION_CELL] = out->cells.cells,
+                 [VIT_SECTION_EMIT] = out->area_lights,
+                 [VIT_SECTION_SKYT] = p->sky.texels,
+                 [VIT_SECTION_PHOT] = out->photons,
+                 [VIT_SECTION_GOLD] = out->gold}};
     b->bounds = (bounds_input){.sections = &out->sections,
                                .scene = &out->plan.scene,
                                .gold = out->gold,
@@ -49,6 +57,9 @@ vit_status stage_frames(bake *b, vit_text *why) {
         t->cameras[i] = t->cameras[c->frames[i]];
         for (uint32_t k = 0; k < t->light_count; k++)
             t->lights[(size_t)i * t->light_count + k] = t->lights[(size_t)c->frames[i] * t->light_count + k];
+        for (uint32_t k = 0; k < b->out->baked.lights; k++)
+            b->out->baked.frames[(size_t)i * b->out->baked.lights + k] =
+                b->out->baked.frames[(size_t)c->frames[i] * b->out->baked.lights + k];
     }
     b->out->plan.scene.frames = c->frame_count;
     return VIT_OK;

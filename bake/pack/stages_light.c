@@ -20,8 +20,7 @@ vit_status stage_plan(bake *b, vit_text *why) {
     return plan_make(&in, &out->plan, why);
 }
 
-/* The sky as a source of photons. */
-static photons_light sky_source(const pipeline *p, const pipeline_packed *out) {
+photons_light stages_sky_source(const pipeline *p, const pipeline_packed *out) {
     const plan *l = &out->plan;
     return (photons_light){
         .light = {.position = {l->sky_center[0], l->sky_center[1], l->sky_center[2]}, .spot_scale = l->sky_radius},
@@ -64,7 +63,7 @@ vit_status stage_guiding(bake *b, vit_text *why) {
             return out_of_memory(why);
         for (uint32_t i = 0; i < c->lights; i++)
             gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
-        const photons_light from_sky = sky_source(p, out);
+        const photons_light from_sky = stages_sky_source(p, out);
         const photon_guiding_input in = {.scene = {.triangles = p->geometry.triangles,
                                                    .attributes = p->geometry.attributes,
                                                    .triangle_count = p->model.triangles,
@@ -102,22 +101,23 @@ vit_status stage_photons(bake *b, vit_text *why) {
     photons_light *lights = calloc(out->tracks.light_count + 2u, sizeof *lights);
     uint32_t count = 0;
     vit_status status = VIT_OK;
+    const bool photons_too = (out->plan.scene.effects & VIT_BIT(PHOTONS)) != 0;
     if (!out->met)
         out->met = calloc(out->plan.scene.materials, sizeof *out->met);
     if (!lights || !out->met) {
         free(lights);
         return out_of_memory(why);
     }
-    for (uint32_t i = 0; i < out->tracks.light_count; i++)
+    for (uint32_t i = 0; photons_too && i < out->tracks.light_count; i++)
         if (out->plan.baked_paths[i] > 0)
             lights[count++] = (photons_light){
                 .light = out->tracks.lights[i], .paths = out->plan.baked_paths[i], .guide = photon_guiding_of(out->guiding, i)};
-    if (out->plan.area_paths > 0)
+    if (photons_too && out->plan.area_paths > 0)
         lights[count++] = (photons_light){.paths = out->plan.area_paths,
                                           .area = &out->plan.area,
                                           .guide = photon_guiding_of(out->guiding, out->tracks.light_count)};
-    if (out->plan.sky_paths > 0)
-        lights[count++] = sky_source(p, out);
+    if (photons_too && out->plan.sky_paths > 0)
+        lights[count++] = stages_sky_source(p, out);
     if (count > 0) {
         progress_stage(p->progress, "photons of still lights");
         photons_input in = {.triangles = out->geometry->triangles,
@@ -178,7 +178,7 @@ vit_status stage_zones(bake *b, vit_text *why) {
         return out_of_memory(why);
     for (uint32_t i = 0; i < out->tracks.light_count; i++)
         gives[i] = out->plan.baked_paths[i] > 0 || out->tracks.lights[i].path_count > 0;
-    const photons_light from_sky = sky_source(p, out);
+    const photons_light from_sky = stages_sky_source(p, out);
     progress_stage(p->progress, "zones and areas");
     const zones_input in = {.geometry = out->geometry,
                             .triangles = out->model->triangles,

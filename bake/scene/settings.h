@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
+enum { INDIRECT_PHOTONS, INDIRECT_BASIS };
 
 typedef struct scene_quality {
 #define SETTING(type, member, ...) type member;

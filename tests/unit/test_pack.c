@@ -4,9 +4,9 @@
 
 #include <float.h>
 
-/* XXH3-64 of the fixture's pack in format version 5. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
+/* XXH3-64 of the fixture's pack in format version 6. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
  * and put the new hash here. */
-#define GOLDEN_PACK_HASH 0xa8a6d4af8e4a04efu
+#define GOLDEN_PACK_HASH 0xd0f74ebfad8beaf3u
 
 static void a_valid_pack_is_accepted_and_its_sections_are_found_in_place(void **state) {
     (void)state;
@@ -18,7 +18,7 @@ static void a_valid_pack_is_accepted_and_its_sections_are_found_in_place(void **
     assert_int_equal(status, VIT_OK);
     assert_ptr_equal(pack.scene, im.scene);
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
-        assert_ptr_equal(pack.section[i], section(&im, i));
+        assert_ptr_equal(pack.section[i], im.table[i].size > 0 ? section(&im, i) : NULL);
         assert_int_equal(pack.bytes[i], im.table[i].size);
     }
     free(im.bytes);
@@ -32,11 +32,16 @@ static void the_bytes_that_were_written_are_the_bytes_that_are_read(void **state
     vit_pack pack;
     vit_text why = {""};
     assert_int_equal(vit_pack_read(im.bytes, im.size, &pack, &why), VIT_OK);
-    const void *written[VIT_SECTION_COUNT] = {&f.scene,    f.cameras,  f.lights,  f.triangles, f.attributes, f.nodes,
-                                              f.materials, f.textures, f.mips,    f.texels,    f.sides,      f.cells,
-                                              f.emitters,  f.sky,      f.photons, f.golds};
+    const void *written[VIT_SECTION_COUNT] = {
+        [VIT_SECTION_META] = &f.scene,    [VIT_SECTION_CAMS] = f.cameras,    [VIT_SECTION_LITE] = f.lights,
+        [VIT_SECTION_GEOM] = f.triangles, [VIT_SECTION_ATTR] = f.attributes, [VIT_SECTION_BVHN] = f.nodes,
+        [VIT_SECTION_MATL] = f.materials, [VIT_SECTION_TEXR] = f.textures,   [VIT_SECTION_MIPS] = f.mips,
+        [VIT_SECTION_ATLS] = f.texels,    [VIT_SECTION_SIDE] = f.sides,      [VIT_SECTION_CELL] = f.cells,
+        [VIT_SECTION_EMIT] = f.emitters,  [VIT_SECTION_SKYT] = f.sky,        [VIT_SECTION_PHOT] = f.photons,
+        [VIT_SECTION_GOLD] = f.golds};
     for (int i = 0; i < VIT_SECTION_COUNT; i++)
-        assert_memory_equal(pack.section[i], written[i], pack.bytes[i]);
+        if (pack.bytes[i] > 0)
+            assert_memory_equal(pack.section[i], written[i], pack.bytes[i]);
     assert_int_equal(pack.bytes[VIT_SECTION_BVHN], 5 * sizeof(vit_bvh_node));
     free(im.bytes);
 }
@@ -53,7 +58,7 @@ static void assembling_twice_gives_the_same_bytes(void **state) {
 static void the_format_has_not_changed_without_a_new_version(void **state) {
     (void)state;
     image im = valid_image();
-    assert_int_equal(VIT_PACK_VERSION, 5);
+    assert_int_equal(VIT_PACK_VERSION, 6);
     uint64_t hash = vit_hash(im.bytes, im.size);
     if (hash != GOLDEN_PACK_HASH)
         fail_msg("the fixture's pack hashes to 0x%016llx", (unsigned long long)hash);
@@ -151,6 +156,8 @@ static void a_file_cut_at_or_inside_any_section_is_refused(void **state) {
     vit_text why;
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
         const vit_pack_entry e = im.table[i];
+        if (e.size == 0)
+            continue;
         const char code[5] = {e.code[0], e.code[1], e.code[2], e.code[3], 0};
         const size_t sizes[] = {(size_t)e.offset, (size_t)(e.offset + e.size / 2), (size_t)(e.offset + e.size - 1)};
         for (int k = 0; k < 3; k++) {
@@ -210,6 +217,8 @@ static void no_bit_can_flip_unnoticed(void **state) {
         }
     for (int i = 0; i < VIT_SECTION_COUNT; i++) { /* and the section is named */
         char code[5] = {0};
+        if (im.table[i].size == 0)
+            continue;
         memcpy(code, im.table[i].code, 4);
         bytes[im.table[i].offset + im.table[i].size - 1] ^= 1;
         assert_refused(read_image(&im, &why), &why, code, "hash");

@@ -1,0 +1,43 @@
+/* baked.c: indirect light of a whole pack: receivers, their irradiance by light that stays as it is, and a basis for lights
+ * that move. */
+#ifndef VIT_RADIOSITY_BAKED_H
+#define VIT_RADIOSITY_BAKED_H
+
+#include "radiosity/basis.h"
+#include "radiosity/receivers.h"
+#include "radiosity/transport.h"
+
+typedef struct baked_input {
+    const photon_rays *rays;
+    const geometry *geometry;
+    const tracks *tracks;
+    uint32_t frames, width, height;
+    const photons_light *still; /* lights, area lights and sky that are the same in all frames */
+    uint32_t still_count;
+    const uint32_t *moving; /* lights of the tracks that are not */
+    uint32_t moving_count;
+    double size;                               /* of the scene: radius of a sphere round it, m */
+    uint32_t reflections;                      /* at most, or TRANSPORT_CONVERGED */
+    double spacing, error;                     /* quality.receiver_spacing, quality.basis_error */
+    uint32_t receiver_rays;                    /* quality.receiver_rays */
+    bool within;                               /* receivers_input.within */
+    bool panes;                                /* light comes through thin glass */
+    unsigned threads;                          /* 0: all cores; changes no byte */
+    void (*progress)(void *user, double done); /* may be NULL */
+    void *user;
+} baked_input;
+
+typedef struct baked {
+    receivers receivers; /* its count is a multiple of VIT_BASIS_GROUP: the last do not matter */
+    vit_receiver *still; /* section RECV */
+    basis basis;
+    vit_basis_frame *frames; /* section BFRM: frame x light */
+    uint32_t lights;
+    transport_report report;
+} baked;
+
+/* VIT_FAILED: out of memory. On failure there is nothing to free. */
+vit_status baked_find(const baked_input *in, baked *out, vit_text *why);
+void baked_free(baked *b);
+
+#endif

@@ -1,0 +1,129 @@
+#include "radiosity/separation.h"
+
+#define NEAR_CORNER 0.9f /* of the way from the middle to a corner */
+#define CANDIDATES 12u   /* planes that are tried, at most */
+
+bool separation_sees(const photon_rays *rays, vec3 a, vec3 b) {
+    const vec3 way = vec3_sub(b, a);
+    const float distance = sqrtf(vec3_dot(way, way));
+    return !(distance > 0.0f) || !photon_rays_occluded(rays, a, vec3_scale(way, 1.0f / distance), distance);
+}
+
+/* Rows of 1, 3, 5 and 7 small triangles: their middles. */
+void separation_place(const cell_corners *k, uint32_t i, float *b1, float *b2) {
+    uint32_t row = 0;
+    while ((row + 1) * (row + 1) <= i)
+        row++;
+    const uint32_t in_row = i - row * row, column = in_row / 2, down = in_row & 1;
+    const float third = 1.0f / 3.0f;
+    const float y = ((float)row + (down ? third : 2.0f * third)) * 0.25f, /* from corner 0 */
+        x = ((float)column + (down ? 2.0f * third : third)) * 0.25f;      /* from the edge 0-1 */
+    const float w[3] = {1.0f - y, y - x, x};
+    *b1 = w[0] * k->b1[0] + w[1] * k->b1[1] + w[2] * k->b1[2];
+    *b2 = w[0] * k->b2[0] + w[1] * k->b2[1] + w[2] * k->b2[2];
+}
+
+typedef struct search {
+    const photon_rays *rays;
+    const geometry *g;
+    vec3 at[SEPARATION_PLACES];
+    uint32_t hidden[SEPARATION_PLACES]; /* bits: places that this one does not see */
+    uint32_t planes;
+    uint32_t triangle[CANDIDATES]; /* that stand in between */
+} search;
+
+/* Notes what stands between two places. */
+static void note(search *s, vec3 a, vec3 b) {
+    const vec3 way = vec3_sub(b, a);
+    const float distance = sqrtf(vec3_dot(way, way));
+    float t;
+    const uint32_t triangle = photon_rays_nearest(s->rays, a, vec3_scale(way, 1.0f / distance), &t);
+    bool known = triangle == VIT_NONE || t > distance || s->planes == CANDIDATES;
+    for (uint32_t i = 0; i < s->planes; i++)
+        known = known || s->triangle[i] == triangle;
+    if (!known)
+        s->triangle[s->planes++] = triangle;
+}
+
+/* Cheap: corners and the middle. Most cells pass, and are done. */
+static bool looks_open(search *s, uint32_t side, const cell_corners *k, float lift) {
+    const vec3 face = side_face(s->g, side);
+    const float m1 = (k->b1[0] + k->b1[1] + k->b1[2]) / 3.0f, m2 = (k->b2[0] + k->b2[1] + k->b2[2]) / 3.0f;
+    vec3 p[4];
+    for (int i = 0; i < 4; i++) {
+        const float w = i < 3 ? NEAR_CORNER : 0.0f;
+        p[i] = vec3_along(side_place(s->g, side, i < 3 ? m1 + (k->b1[i] - m1) * w : m1, i < 3 ? m2 + (k->b2[i] - m2) * w : m2),
+                          face, lift);
+    }
+    bool open = true;
+    for (int a = 0; a < 4; a++)
+        for (int b = a + 1; b < 4; b++)
+            if (!separation_sees(s->rays, p[a], p[b])) {
+                note(s, p[a], p[b]);
+                note(s, p[b], p[a]);
+                open = false;
+            }
+    return open;
+}
+
+static void look_round(search *s, uint32_t side, const cell_corners *k, float lift) {
+    const vec3 face = side_face(s->g, side);
+    for (uint32_t i = 0; i < SEPARATION_PLACES; i++) {
+        float b1, b2;
+        separation_place(k, i, &b1, &b2);
+        s->at[i] = vec3_along(side_place(s->g, side, b1, b2), face, lift);
+        s->hidden[i] = 0;
+    }
+    for (uint32_t a = 0; a < SEPARATION_PLACES; a++)
+        for (uint32_t b = a + 1; b < SEPARATION_PLACES; b++)
+            if (!separation_sees(s->rays, s->at[a], s->at[b])) {
+                if (s->planes < CANDIDATES)
+                    note(s, s->at[a], s->at[b]);
+                s->hidden[a] |= 1u << b;
+                s->hidden[b] |= 1u << a;
+            }
+}
+
+/* Pairs in `hidden` of the places not alone: both ways. */
+static int pairs_between(const search *s, uint32_t from, uint32_t to, bool hidden) {
+    int sum = 0;
+    for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
+        if (from >> i & 1)
+            sum += __builtin_popcount((hidden ? s->hidden[i] : ~s->hidden[i]) & to & ~(1u << i));
+    return sum;
+}
+
+bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, const cell_corners *k, float lift,
+                     separation *out) {
+    search s = {.rays = rays, .g = g};
+    const uint32_t all = (1u << SEPARATION_PLACES) - 1u;
+    *out = (separation){.places = all};
+    if (looks_open(&s, side, k, lift))
+        return false;
+    look_round(&s, side, k, lift);
+    uint32_t there = all;
+    for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
+        if ((s.hidden[i] | 1u << i) == all)
+            there &= ~(1u << i);
+    out->alone = all & ~there;
+    out->places = there;
+    int best = 0;
+    for (uint32_t c = 0; c < s.planes; c++) {
+        const vec3 n = side_face(g, 2 * s.triangle[c]);
+        const float offset = vec3_dot(n, vec3_load(g->triangles[s.triangle[c]].v0));
+        uint32_t front = 0;
+        for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
+            front |= vec3_dot(n, s.at[i]) > offset ? 1u << i : 0u;
+        const uint32_t a = front & there, b = ~front & there;
+        const int score = pairs_between(&s, a, b, true) - pairs_between(&s, a, b, false);
+        if (a && b && score > best) {
+            best = score;
+            out->places = a;
+            out->normal[0] = n.x;
+            out->normal[1] = n.y;
+            out->normal[2] = n.z;
+            out->offset = offset;
+        }
+    }
+    return best > 0;
+}

@@ -1,0 +1,189 @@
+#include "common/parallel.h"
+#include "light/panes.h"
+#include "radiosity/transport_parts.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define LEAST_SAMPLES 4u      /* of each light that is found by chance, at each of a cell's places */
+#define MORE_LOOKS 24000000.0 /* at lights, shared out among the cells by how much each adds to the error */
+#define MOST_SAMPLES 16384u   /* of a cell */
+#define LIFT 0.04f            /* in edges: as in transport_rows.c */
+
+/* A light that is everywhere else than at one place or in one direction: looked at by chance. */
+static bool is_sampled(const photons_light *l) {
+    return l->area || l->sky;
+}
+
+typedef struct lighting {
+    transport *t;
+    float *radiosity;
+    float *weight;    /* a number: how much of its light receivers get, summed */
+    double *variance; /* a number: of one sample, all columns added up */
+    uint32_t *more;   /* a number: further samples */
+} lighting;
+
+typedef struct spot {
+    vec3 position, face, normal, albedo;
+} spot;
+
+static spot spot_at(const transport *t, const transport_place *p, float edge) {
+    const photon_scene *s = t->in->rays->s;
+    const vec3 face = side_face(t->in->geometry, p->side);
+    const float high = float_max(edge, 4.0f * s->ray_offset);
+    float b[3];
+    const vec3 above = vec3_along(transport_place_at(t, p), face, high);
+    const photon_surface at = photon_surface_seen(s, above, vec3_scale(face, -1.0f), high, p->side / 2, 0.25f, b);
+    /* A lobe reflects as much as a matt surface would. */
+    const float *lobe = at.material->specular;
+    const vec3 albedo = {at.albedo.x + lobe[0], at.albedo.y + lobe[1], at.albedo.z + lobe[2]};
+    return (spot){.position = vec3_along(transport_place_at(t, p), face, s->ray_offset),
+                  .face = face,
+                  .normal = at.normal,
+                  .albedo = albedo};
+}
+
+/* Radiosity by one look at a light. */
+static vec3 look(const transport *t, const photons_light *l, const spot *at, double x, double y, uint64_t *rays) {
+    const arrival a = photon_arrival(t->in->rays, l, at->position, x, y);
+    const float cosine = vec3_dot(at->normal, a.direction);
+    float mirror;
+    if (!(cosine > 0.0f) || !(vec3_dot(at->face, a.direction) > 0.0f) ||
+        !(a.irradiance.x + a.irradiance.y + a.irradiance.z > 0.0f))
+        return (vec3){0.0f, 0.0f, 0.0f};
+    *rays += 1;
+    const vec3 part = panes_pass(t->in->rays, t->in->panes, at->position, a.direction, a.distance, &mirror);
+    return vec3_times(vec3_times(vec3_scale(a.irradiance, cosine), part), at->albedo);
+}
+
+static void add(float *to, vec3 v, float scale) {
+    to[0] += v.x * scale;
+    to[1] += v.y * scale;
+    to[2] += v.z * scale;
+}
+
+static float numbers(uint32_t seed, uint32_t i, float *v) {
+    *v = unit_float(i * 0x91e10da5u + pcg(seed ^ 0x68bc21ebu));
+    return unit_float(i * 0xc13fa9a9u + seed);
+}
+
+/* One sample of a cell's radiosity in all states; repeats: of lights that are found by chance. Returns the sum. */
+static double light_place(const transport *t, const spot *at, uint32_t seed, uint32_t first, uint32_t repeats, float scale,
+                          float *to, uint64_t *rays) {
+    double sum = 0.0;
+    for (uint32_t s = 0; s < t->in->state_count; s++)
+        for (uint32_t i = 0; i < t->in->states[s].count; i++) {
+            const photons_light *light = t->in->states[s].lights + i;
+            const uint32_t looks = is_sampled(light) ? repeats : 1;
+            for (uint32_t k = 0; k < looks; k++) {
+                float v;
+                const float u = numbers(pcg(seed ^ pcg(i)), first + k, &v);
+                const vec3 e = look(t, light, at, (double)u, (double)v, rays);
+                add(to + 3 * s, e, scale / (float)looks);
+                sum += ((double)e.x + (double)e.y + (double)e.z) / looks;
+            }
+        }
+    return sum;
+}
+
+static void light_cell(void *user, uint32_t n, uint64_t *rays) {
+    const lighting *l = user;
+    const transport *t = l->t;
+    float *to = l->radiosity + (size_t)n * t->columns;
+    const uint32_t places = t->place_count[n];
+    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    double sum = 0.0, squares = 0.0;
+    memset(to, 0, t->columns * sizeof *to);
+    for (uint32_t p = 0; p < places; p++) {
+        const spot at = spot_at(t, t->places + (size_t)n * TRANSPORT_PLACES + p, edge);
+        const double all = light_place(t, &at, n, p * LEAST_SAMPLES, LEAST_SAMPLES, 1.0f / (float)places, to, rays);
+        sum += all;
+        squares += all * all;
+    }
+    /* A single place tells nothing of how light varies: as much as it is itself. */
+    const double mean = sum / places;
+    l->variance[n] = places > 1 ? (squares - mean * sum) / (places - 1) : mean * mean;
+}
+
+/* A place of the cell's part that chance finds, if one of the places where rays met it sees it. */
+static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge, transport_place *out) {
+    const uint32_t cell = t->cell[n] / 2, part = t->cell[n] & 1, split = t->split[cell], side = t->cells.side_of[cell];
+    const cell_corners c = cells_corners(&t->cells, cell);
+    const vec3 up = vec3_scale(side_face(t->in->geometry, side), float_max(edge * LIFT, 2.0f * t->in->rays->s->ray_offset));
+    const float u = sqrtf(unit_float(k * 0xc13fa9a9u + pcg(n))), v = unit_float(k * 0x91e10da5u + pcg(n ^ 0x5bd1e995u));
+    const float w[3] = {1.0f - u, u * (1.0f - v), u * v};
+    *out = (transport_place){.side = side};
+    for (int i = 0; i < 3; i++) {
+        out->b1 += w[i] * c.b1[i];
+        out->b2 += w[i] * c.b2[i];
+    }
+    const vec3 at = transport_place_at(t, out);
+    if (split != VIT_NONE && separation_front(t->splits[split].normal, t->splits[split].offset, at) != (part == 0))
+        return false;
+    const transport_place *known = t->places + (size_t)n * TRANSPORT_PLACES + pcg(k) % t->place_count[n];
+    return separation_sees(t->in->rays, vec3_along(at, up, 1.0f), vec3_along(transport_place_at(t, known), up, 1.0f));
+}
+
+static void light_more(void *user, uint32_t n, uint64_t *rays) {
+    const lighting *l = user;
+    const transport *t = l->t;
+    if (l->more[n] == 0)
+        return;
+    float *to = l->radiosity + (size_t)n * t->columns;
+    const uint32_t places = t->place_count[n];
+    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    uint32_t count = places;
+    for (uint32_t c = 0; c < t->columns; c++)
+        to[c] *= (float)places;
+    for (uint32_t k = 0; k < l->more[n]; k++) {
+        transport_place p;
+        if (!further_place(t, n, k, edge, &p))
+            continue;
+        const spot at = spot_at(t, &p, edge);
+        light_place(t, &at, n, places * LEAST_SAMPLES + k, 1, 1.0f, to, rays);
+        count++;
+    }
+    for (uint32_t c = 0; c < t->columns; c++)
+        to[c] /= (float)count;
+}
+
+/* How many more samples each cell gets: in proportion to what its deviation does to the receivers. */
+static void share_out(lighting *l) {
+    const transport *t = l->t;
+    double looks = 0.0, all = 0.0;
+    for (uint32_t s = 0; s < t->in->state_count; s++)
+        looks += t->in->states[s].count;
+    for (size_t k = 0; k < t->gathers.first[t->gathers.count]; k++)
+        l->weight[t->gathers.to[k]] += t->gathers.factor[k];
+    for (uint32_t i = 0; i < t->count; i++)
+        all += (double)l->weight[i] * sqrt(l->variance[i] > 0.0 ? l->variance[i] : 0.0);
+    for (uint32_t i = 0; i < t->count && all > 0.0 && looks > 0.0; i++) {
+        const double part = (double)l->weight[i] * sqrt(l->variance[i] > 0.0 ? l->variance[i] : 0.0) / all * MORE_LOOKS / looks;
+        l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
+    }
+}
+
+bool transport_direct(transport *t, float *radiosity) {
+    lighting l = {.t = t, .radiosity = radiosity};
+    l.weight = calloc(t->count + 1u, sizeof *l.weight);
+    l.variance = malloc((t->count + 1u) * sizeof *l.variance);
+    l.more = calloc(t->count + 1u, sizeof *l.more);
+    const bool fine = l.weight && l.variance && l.more;
+    if (fine) {
+        const parallel_work first = {.run = light_cell, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads},
+                            second = {.run = light_more, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads};
+        parallel_run(&first, &t->report->light_rays);
+        share_out(&l);
+        parallel_run(&second, &t->report->light_rays);
+    }
+    free(l.weight);
+    free(l.variance);
+    free(l.more);
+    return fine;
+}
+
+void transport_albedo(const transport *t, uint32_t n, float out[3]) {
+    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    out[0] = out[1] = out[2] = 0.0f;
+    for (uint32_t p = 0; p < t->place_count[n]; p++)
+        add(out, spot_at(t, t->places + (size_t)n * TRANSPORT_PLACES + p, edge).albedo, 1.0f / (float)t->place_count[n]);
+}

@@ -1,0 +1,148 @@
+/* pack_check_basis.c: checks what is baked for receivers: every index that the passes relight and estimate use. */
+#include "pack_check.h"
+
+static vit_status check_receivers(const vit_scene *s, const vit_u32 receiver[3], const char *code, vit_u32 i, vit_text *why) {
+    for (int k = 0; k < 3; k++)
+        if (receiver[k] >= s->receivers)
+            return vit_pack_refuse(why, "section %s: record %u: receiver %u of %u", code, i, receiver[k], s->receivers);
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_RCEL(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
+    for (vit_u32 i = 0; i < s->receiver_cells; i++) {
+        const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
+        const vit_status status = check_receivers(s, c->receiver, "RCEL", i, why);
+        if (status != VIT_OK)
+            return status;
+        if (c->split != VIT_NONE && c->split >= s->receiver_splits)
+            return vit_pack_refuse(why, "section RCEL: record %u: split %u of %u", i, c->split, s->receiver_splits);
+    }
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_RSPL(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_receiver_split *splits = p->section[VIT_SECTION_RSPL];
+    for (vit_u32 i = 0; i < s->receiver_splits; i++) {
+        const vit_receiver_split *c = VIT_RECORD(vit_receiver_split, splits, i);
+        const vit_status status = check_receivers(s, c->receiver, "RSPL", i, why);
+        if (status != VIT_OK)
+            return status;
+        if (!is_unit(c->normal) || !all_finite(&c->offset, 1))
+            return vit_pack_refuse(why, "section RSPL: record %u: its normal is not a unit vector, or its offset not finite",
+                                   i);
+        if (c->pad != 0)
+            return vit_pack_refuse(why, "section RSPL: record %u: padding is not 0", i);
+    }
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_RECV(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_receiver *receivers = p->section[VIT_SECTION_RECV];
+    for (vit_u32 i = 0; i < s->receivers; i++) {
+        const vit_receiver *r = VIT_RECORD(vit_receiver, receivers, i);
+        if (!all_in_range(r->irradiance, 3, 0.0f, VIT_MAX_PHOTON) || r->pad != 0)
+            return vit_pack_refuse(why, "section RECV: receiver %u: irradiance must be in 0..%g, and padding 0", i,
+                                   (double)VIT_MAX_PHOTON);
+    }
+    return VIT_OK;
+}
+
+/* One past the last knot that any frame uses of the lights' row l. */
+static vit_u32 knots_of(const vit_pack *p, vit_u32 l) {
+    const vit_scene *s = p->scene;
+    vit_u32 most = 0;
+    for (vit_u32 f = 0; f < s->frames; f++) {
+        const vit_basis_frame *at =
+            VIT_RECORD(vit_basis_frame, (const vit_basis_frame *)p->section[VIT_SECTION_BFRM], (size_t)f * s->basis_lights + l);
+        const vit_u32 end = at->knot + 1 + (at->weight > 0.0f ? 1u : 0u);
+        most = end > most ? end : most;
+    }
+    return most;
+}
+
+/* BFRM has not been checked yet when BGRP is: both are looked at here, and frames first. */
+vit_status vit_pack_check_BGRP(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_basis_group *groups = p->section[VIT_SECTION_BGRP];
+    const vit_status status = vit_pack_check_BFRM(p, why);
+    if (status != VIT_OK)
+        return status;
+    const vit_u32 count = s->receivers / VIT_BASIS_GROUP;
+    for (vit_u32 l = 0; l < s->basis_lights; l++) {
+        const uint64_t knots = knots_of(p, l);
+        for (vit_u32 g = 0; g < count; g++) {
+            const vit_u32 i = g * s->basis_lights + l;
+            const vit_basis_group *b = VIT_RECORD(vit_basis_group, groups, i);
+            if (b->rank > VIT_BASIS_RANK || b->pad != 0)
+                return vit_pack_refuse(why, "section BGRP: record %u: rank must be in 0..%u, and padding 0", i, VIT_BASIS_RANK);
+            if ((uint64_t)b->first_word + (uint64_t)b->rank * (VIT_BASIS_GROUP / 2) > s->basis_words)
+                return vit_pack_refuse(why, "section BGRP: record %u: vectors run beyond the %u words of META", i,
+                                       s->basis_words);
+            if (b->first_coefficient + knots * b->rank > s->basis_coefficients)
+                return vit_pack_refuse(why, "section BGRP: record %u: coefficients run beyond the %u of META", i,
+                                       s->basis_coefficients);
+        }
+    }
+    return VIT_OK;
+}
+
+/* Every word is two numbers. */
+vit_status vit_pack_check_BWRD(const vit_pack *p, vit_text *why) {
+    (void)p;
+    (void)why;
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_BCOE(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_basis_coefficient *coefficients = p->section[VIT_SECTION_BCOE];
+    for (vit_u32 i = 0; i < s->basis_coefficients; i++) {
+        const vit_basis_coefficient *c = VIT_RECORD(vit_basis_coefficient, coefficients, i);
+        if (!all_in_range(c->rgb, 3, -VIT_MAX_PHOTON, VIT_MAX_PHOTON) || c->pad != 0)
+            return vit_pack_refuse(why, "section BCOE: record %u: must be in -%g..%g, and padding 0", i, (double)VIT_MAX_PHOTON,
+                                   (double)VIT_MAX_PHOTON);
+    }
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_BFRM(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_basis_frame *frames = p->section[VIT_SECTION_BFRM];
+    for (uint64_t i = 0; i < (uint64_t)s->frames * s->basis_lights; i++) {
+        const vit_basis_frame *at = VIT_RECORD(vit_basis_frame, frames, i);
+        if (at->light >= s->lights || !in_range(at->weight, 0.0f, 1.0f) || at->knot > s->basis_coefficients || at->pad != 0)
+            return vit_pack_refuse(why, "section BFRM: record %llu: light %u of %u, knot %u, weight %g", (unsigned long long)i,
+                                   at->light, s->lights, at->knot, (double)at->weight);
+    }
+    return VIT_OK;
+}
+
+static double largest(const float c[3]) {
+    double most = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double v = c[k] < 0.0f ? -(double)c[k] : (double)c[k];
+        most = v > most ? v : most;
+    }
+    return most;
+}
+
+/* As if all coefficients were the largest, and all vectors' numbers too. */
+double vit_pack_basis_bound(const vit_pack *p, double *still) {
+    const vit_scene *s = p->scene;
+    double coefficient = 0.0;
+    *still = 0.0;
+    for (vit_u32 i = 0; i < s->receivers; i++) {
+        const double e = largest(VIT_RECORD(vit_receiver, (const vit_receiver *)p->section[VIT_SECTION_RECV], i)->irradiance);
+        *still = e > *still ? e : *still;
+    }
+    for (vit_u32 i = 0; i < s->basis_coefficients; i++) {
+        const double c =
+            largest(VIT_RECORD(vit_basis_coefficient, (const vit_basis_coefficient *)p->section[VIT_SECTION_BCOE], i)->rgb);
+        coefficient = c > coefficient ? c : coefficient;
+    }
+    return coefficient * 32768.0 * VIT_BASIS_RANK;
+}
