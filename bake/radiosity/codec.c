@@ -63,13 +63,13 @@ bool codec_lay_out(uint32_t codec, uint32_t patches, uint32_t rank, uint64_t spa
 /* ---- encoding ---- */
 
 static vit_status encode_sparse(const codec_input *in, coded *out, vit_text *why) {
-    const uint32_t n = in->matrix->count, rank = in->codec == VIT_TRANSFER_BC1 ? 0 : in->rank ? in->rank : CODEC_RANK;
+    const uint32_t n = in->matrix->count, rank = in->codec == VIT_TRANSFER_BC1 ? 0 : in->rank ? in->rank : CODEC_RANK(n);
     const double usual = in->codec == VIT_TRANSFER_BC1 ? CODEC_KEEP_BC1 : CODEC_KEEP;
-    uint8_t *keep = calloc((size_t)n * n + 1, 1);
+    kept_entries kept = {0};
     sparse_shape shape = {0};
     vit_transfer h;
     vit_status status = VIT_OK;
-    if (!keep || !codec_choose(in, in->keep < 0.0 ? usual : in->keep, keep) || !codec_sparse_shape(in->codec, n, keep, &shape))
+    if (!codec_choose(in, in->keep < 0.0 ? usual : in->keep, &kept) || !codec_sparse_shape(in->codec, n, kept.keep, &shape))
         status = bake_fail(why, VIT_FAILED, "coded transfer matrix: out of memory");
     else if (!codec_lay_out(in->codec, n, rank, shape.words, &h))
         status = bake_fail(why, VIT_BAD_INPUT, "a transfer matrix of %u patches is too large to be coded", n);
@@ -80,12 +80,12 @@ static vit_status encode_sparse(const codec_input *in, coded *out, vit_text *why
         h.sparse_chunks = shape.chunks;
         memcpy(out->words, &h, sizeof h);
         if (in->codec == VIT_TRANSFER_BC1)
-            codec_encode_bc1(in, keep, out->words);
-        codec_encode_sparse(in, keep, &shape, out->words);
+            codec_encode_bc1(in, &kept, out->words);
+        codec_encode_sparse(in, &kept, &shape, out->words);
         if (rank)
-            status = codec_encode_low_rank(in, keep, &shape, out->words, why);
+            status = codec_encode_low_rank(in, &kept, &shape, out->words, why);
     }
-    free(keep);
+    kept_entries_free(&kept);
     free(shape.place);
     free(shape.slots);
     return status;

@@ -5,9 +5,9 @@
 
 #include "radiosity/transfer_matrix.h"
 
-#define CODEC_KEEP_BC1 0.04 /* of the entries, that are kept exactly (Shcherbakov 2017) */
-#define CODEC_KEEP 0.06     /* that are kept beside the part of low rank */
-#define CODEC_RANK 64u      /* of that part */
+#define CODEC_KEEP_BC1 0.04                                /* of the entries, that are kept exactly (Shcherbakov 2017) */
+#define CODEC_KEEP 0.06                                    /* that are kept beside the part of low rank */
+#define CODEC_RANK(patches) ((patches) < 2048 ? 48u : 64u) /* of that part */
 #define CODEC_RANK_MOST 512u
 #define CODEC_PATCHES_MOST 65536u
 
@@ -16,7 +16,7 @@ typedef struct codec_input {
     const float *area; /* count: what a row's error weighs; NULL: all the same */
     uint32_t codec;    /* VIT_TRANSFER_* */
     double keep;       /* BC1, SPARSE_LOW_RANK: share of the entries that is kept apart; 0: none, < 0: as above */
-    uint32_t rank;     /* SPARSE_LOW_RANK: a multiple of 16, or 0 for CODEC_RANK; at most CODEC_RANK_MOST */
+    uint32_t rank;     /* SPARSE_LOW_RANK: a multiple of 16, or 0 for CODEC_RANK(); at most CODEC_RANK_MOST */
     unsigned threads;  /* 0: all cores; changes no byte */
 } codec_input;
 

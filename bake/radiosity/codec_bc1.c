@@ -77,11 +77,11 @@ static void pack_panel(void *user, uint32_t panel) {
     }
 }
 
-void codec_encode_bc1(const codec_input *in, const uint8_t *keep, uint32_t *words) {
+void codec_encode_bc1(const codec_input *in, const kept_entries *kept, uint32_t *words) {
     vit_transfer *h = (vit_transfer *)(void *)words;
-    picture p = {in, keep, words};
+    picture p = {in, kept->keep, words};
     uint32_t low, high;
-    find_range(in, keep, &low, &high);
+    find_range(in, kept->keep, &low, &high);
     if (high >= low) {
         h->step = (high - low) / (3 * (LEVELS - 1)) + 1;
         h->base = high - 3 * LEVELS * h->step;

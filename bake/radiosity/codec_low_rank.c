@@ -1,4 +1,4 @@
-/* The entries that are not kept apart as a product of low rank, the same two factors for all channels: S_c = diag(a_c) L M_c
+/* What is not kept apart as a product of low rank, the same two factors for all channels: S_c = diag(a_c) L M_c
  * R^T. Their ranges are found by random vectors and powers of the matrix (Halko 2011), of entries weighed by what they do to
  * reflected light: an error of row i counts by its area A_i, and light leaves column j in proportion to A_j, so that it is
  * sqrt(A_i) S_ij / sqrt(A_j) whose squares are to be small. */
@@ -15,9 +15,8 @@
 
 typedef struct factoring {
     const codec_input *in;
-    const uint8_t *keep;
+    const kept_entries *kept;
     uint32_t n, rank;
-    float *root;                 /* n: sqrt of area */
     float *tint;                 /* 3 n: a row's channel over its grey, 0 if it is black */
     float *rest;                 /* n x n: grey of what is not kept, weighed */
     float *left, *right, *image; /* n x rank each */
@@ -26,16 +25,15 @@ typedef struct factoring {
     uint32_t channel;
 } factoring;
 
-/* A row of a channel without its tint, weighed, without what is kept; channel 3: the sum of all three. */
+/* A row of a channel without its tint, weighed, less what is kept; channel 3: the sum of all three. */
 static void row_left(const factoring *f, uint32_t i, uint32_t channel, float *out) {
     const size_t n = f->n;
     for (size_t j = 0; j < n; j++)
         out[j] = 0.0f;
     for (uint32_t c = channel < 3 ? channel : 0; c < (channel < 3 ? channel + 1 : 3); c++) {
-        const float tint = f->tint[c * n + i], by = tint > 0.0f ? f->root[i] / tint : 0.0f;
-        for (size_t j = 0; j < n; j++)
-            if (!f->keep[i * n + j])
-                out[j] += f->in->matrix->s[c][i * n + j] * by / f->root[j];
+        const float tint = f->tint[c * n + i], by = tint > 0.0f ? f->kept->root[i] / tint : 0.0f;
+        for (uint32_t j = 0; j < n; j++)
+            out[j] += f->in->matrix->s[c][i * n + j] * codec_share_left(f->in, f->kept, i, j) * by / f->kept->root[j];
     }
 }
 
@@ -149,12 +147,12 @@ static void write_sides(const factoring *f, const sparse_shape *shape, uint32_t 
         for (uint32_t k = 0; k < f->rank; k++)
             words[h->left + ((size_t)panel * f->rank / 2 + k / 2) * PANEL + r] |= ((uint32_t)q[k] & 0xffff) << (k % 2 * 16);
         for (uint32_t c = 0; c < 3; c++)
-            words[h->left_scale + (panel * 3 + c) * PANEL + r] = float_bits(scale / f->root[i] * f->tint[c * f->n + i]);
+            words[h->left_scale + (panel * 3 + c) * PANEL + r] = float_bits(scale / f->kept->root[i] * f->tint[c * f->n + i]);
         scale = quantised(f->right + (size_t)i * f->rank, f->rank, q);
         for (uint32_t k = 0; k < f->rank; k++)
             words[h->right + ((size_t)(k / 16) * h->stride / 2 + i / 2) * 16 + k % 16] |= ((uint32_t)q[k] & 0xffff)
                                                                                           << (i % 2 * 16);
-        words[h->right_scale + i] = float_bits(scale * f->root[i]);
+        words[h->right_scale + i] = float_bits(scale * f->kept->root[i]);
     }
 }
 
@@ -174,28 +172,24 @@ static void write_mix(factoring *f, uint32_t *words) {
     }
 }
 
-vit_status codec_encode_low_rank(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words,
+vit_status codec_encode_low_rank(const codec_input *in, const kept_entries *kept, const sparse_shape *shape, uint32_t *words,
                                  vit_text *why) {
     const size_t n = in->matrix->count, rank = header_of(words)->rank;
     factoring f = {.in = in,
-                   .keep = keep,
+                   .kept = kept,
                    .n = in->matrix->count,
                    .rank = header_of(words)->rank,
-                   .root = malloc(n * sizeof(float)),
                    .tint = malloc(3 * n * sizeof(float)),
                    .rest = malloc(n * n * sizeof(float)),
                    .left = malloc(n * rank * sizeof(float)),
                    .right = malloc(n * rank * sizeof(float)),
                    .image = malloc(n * rank * sizeof(float))};
-    const bool fine = f.root && f.tint && f.rest && f.left && f.right && f.image;
-    for (size_t i = 0; fine && i < n; i++)
-        f.root[i] = in->area && in->area[i] > 0.0f ? sqrtf(in->area[i]) : 1.0f;
+    const bool fine = f.tint && f.rest && f.left && f.right && f.image;
     if (fine) {
         find_factors(&f);
         write_sides(&f, shape, words);
         write_mix(&f, words);
     }
-    free(f.root);
     free(f.tint);
     free(f.rest);
     free(f.left);

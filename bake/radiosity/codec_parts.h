@@ -56,13 +56,24 @@ void codec_encode_dense(const codec_input *in, uint32_t *words);
 /* Of columns first .. first + count - 1 of a row; the part's alone. */
 void codec_dense_row(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t first, uint32_t count, float *out);
 
-/* codec_bc1.c. `keep`: entries that are kept apart, the picture has nothing to say of them: n x n. */
-void codec_encode_bc1(const codec_input *in, const uint8_t *keep, uint32_t *words);
+/* Which entries are kept apart: n x n. Of a kept entry the part of low rank gets `half` over what it does to reflected light,
+ * so that it is not torn by holes, nor pulled by peaks: singular values are shrunk alike in robust principal components. */
+typedef struct kept_entries {
+    uint8_t *keep;
+    float *root; /* of a patch's area */
+    float half;  /* of what the least of them does */
+} kept_entries;
+
+/* codec_bc1.c: a picture that has nothing to say of kept entries. */
+void codec_encode_bc1(const codec_input *in, const kept_entries *kept, uint32_t *words);
 void codec_bc1_row(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t first, uint32_t count, float *out);
 
-/* codec_sparse.c: entries kept apart. Marks in->keep of them, the largest in what they do to reflected light; false: out of
+/* codec_sparse.c: entries kept apart. Chooses `share` of them, the largest in what they do to reflected light; false: out of
  * memory. */
-bool codec_choose(const codec_input *in, double share, uint8_t *keep);
+bool codec_choose(const codec_input *in, double share, kept_entries *out);
+void kept_entries_free(kept_entries *kept);
+/* The share of an entry that is left to the part of low rank: 1 if it is not kept. */
+float codec_share_left(const codec_input *in, const kept_entries *kept, uint32_t i, uint32_t j);
 typedef struct sparse_shape {
     uint32_t *place; /* a row's; stride */
     uint32_t *slots; /* of a panel of places */
@@ -71,14 +82,14 @@ typedef struct sparse_shape {
 } sparse_shape;
 bool codec_sparse_shape(uint32_t codec, uint32_t patches, const uint8_t *keep, sparse_shape *out);
 /* Writes panels, places, sparse, and base where codes need it. BC1: what the picture lacks. */
-void codec_encode_sparse(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words);
+void codec_encode_sparse(const codec_input *in, const kept_entries *kept, const sparse_shape *shape, uint32_t *words);
 /* Sum over chunk `chunk` of a row's sparse entries times every fourth of x, and the entries added to a row. */
 float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t chunk, const float *x);
 void codec_sparse_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
 bool codec_sparse_good(const uint32_t *words);
 
-/* codec_low_rank.c: the entries that are not kept. */
-vit_status codec_encode_low_rank(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words,
+/* codec_low_rank.c: what is not kept. */
+vit_status codec_encode_low_rank(const codec_input *in, const kept_entries *kept, const sparse_shape *shape, uint32_t *words,
                                  vit_text *why);
 /* What `left` is multiplied by: rank numbers a channel. */
 void codec_low_rank_mixed(const uint32_t *words, const float *x, float *mixed);

@@ -11,32 +11,31 @@
 
 /* ---- which ---- */
 
-typedef struct choosing {
-    const codec_input *in;
-    float *root; /* of a patch's area */
-} choosing;
-
-/* What an entry does to reflected light, as bits of a float. BC1 goes by the largest channel alone, as its source does. */
-static uint32_t worth(const choosing *c, uint32_t i, uint32_t j) {
-    const transfer_matrix *m = c->in->matrix;
+/* What an entry does to reflected light. BC1 goes by the largest channel alone, as its source does. */
+static float worth(const codec_input *in, const float *root, uint32_t i, uint32_t j) {
+    const transfer_matrix *m = in->matrix;
     const size_t at = (size_t)i * m->count + j;
     const float r = m->s[0][at], g = m->s[1][at], b = m->s[2][at];
-    if (c->in->codec != VIT_TRANSFER_BC1)
-        return float_bits((r + g + b) * c->root[i] / c->root[j]);
+    if (in->codec != VIT_TRANSFER_BC1)
+        return (r + g + b) * root[i] / root[j];
     const float rg = r > g ? r : g;
-    return float_bits(rg > b ? rg : b);
+    return rg > b ? rg : b;
+}
+
+float codec_share_left(const codec_input *in, const kept_entries *kept, uint32_t i, uint32_t j) {
+    return kept->keep[(size_t)i * in->matrix->count + j] ? kept->half / worth(in, kept->root, i, j) : 1.0f;
 }
 
 /* The greatest worth from which on at most `*count` entries are; *count becomes what is left for those just below it. Worths by
  * their upper and then their lower half. */
-static uint32_t threshold(const choosing *c, uint64_t *count, uint64_t *histogram) {
-    const uint32_t n = c->in->matrix->count;
+static uint32_t threshold(const codec_input *in, const float *root, uint64_t *count, uint64_t *histogram) {
+    const uint32_t n = in->matrix->count;
     uint32_t upper = 0;
     for (int half = 0; half < 2; half++) {
         memset(histogram, 0, 65536 * sizeof *histogram);
         for (uint32_t i = 0; i < n; i++)
             for (uint32_t j = 0; j < n; j++) {
-                const uint32_t w = worth(c, i, j);
+                const uint32_t w = float_bits(worth(in, root, i, j));
                 if (half == 0)
                     histogram[w >> 16]++;
                 else if (w >> 16 == upper)
@@ -52,27 +51,33 @@ static uint32_t threshold(const choosing *c, uint64_t *count, uint64_t *histogra
     return 0;
 }
 
-bool codec_choose(const codec_input *in, double share, uint8_t *keep) {
+bool codec_choose(const codec_input *in, double share, kept_entries *out) {
     const uint32_t n = in->matrix->count;
     uint64_t count = (uint64_t)floor(share * (double)n * (double)n);
     uint64_t *histogram = malloc(65536 * sizeof *histogram);
-    choosing c = {in, malloc(n * sizeof *c.root)};
-    const bool fine = histogram && c.root;
+    *out = (kept_entries){.keep = calloc((size_t)n * n + 1, 1), .root = malloc(n * sizeof *out->root)};
+    const bool fine = histogram && out->keep && out->root;
     for (uint32_t i = 0; fine && i < n; i++)
-        c.root[i] = in->area && in->area[i] > 0.0f ? sqrtf(in->area[i]) : 1.0f;
+        out->root[i] = in->area && in->area[i] > 0.0f ? sqrtf(in->area[i]) : 1.0f;
     if (fine) {
-        const uint32_t least = threshold(&c, &count, histogram);
+        const uint32_t least = threshold(in, out->root, &count, histogram);
+        out->half = 0.5f * bits_float(least);
         for (uint32_t i = 0; i < n; i++)
             for (uint32_t j = 0; j < n; j++) {
-                const uint32_t w = worth(&c, i, j);
+                const uint32_t w = float_bits(worth(in, out->root, i, j));
                 const bool tie = w == least && w > 0 && count > 0;
-                keep[(size_t)i * n + j] = w > least || tie;
+                out->keep[(size_t)i * n + j] = w > least || tie;
                 count -= tie;
             }
     }
     free(histogram);
-    free(c.root);
     return fine;
+}
+
+void kept_entries_free(kept_entries *kept) {
+    free(kept->keep);
+    free(kept->root);
+    *kept = (kept_entries){0};
 }
 
 /* ---- where ---- */
@@ -125,7 +130,7 @@ static slot_at slot_of(uint32_t codec, uint32_t slot, uint32_t r) {
 
 typedef struct writing {
     const codec_input *in;
-    const uint8_t *keep;
+    const kept_entries *kept;
     const uint32_t *row_at; /* of a place */
     uint32_t *words;
 } writing;
@@ -136,8 +141,8 @@ static void write_bases(const writing *w, uint32_t place, uint32_t row, uint32_t
     for (uint32_t c = 0; c < TRANSFER_CHANNELS; c++) {
         float most = 0.0f;
         for (uint32_t j = 0; row < n && j < n; j++) {
-            const float s = w->in->matrix->s[c][(size_t)row * n + j];
-            most = w->keep[(size_t)row * n + j] && s > most ? s : most;
+            const float s = w->in->matrix->s[c][(size_t)row * n + j] * (1.0f - codec_share_left(w->in, w->kept, row, j));
+            most = s > most ? s : most;
         }
         const uint32_t top = float_bits(most), range = MOST_KEPT(c) * STEP_KEPT(c);
         base[c] = top > range ? top - range : 0;
@@ -153,7 +158,7 @@ static void write_place(void *user, uint32_t place) {
     if (h->codec == VIT_TRANSFER_SPARSE_LOW_RANK)
         write_bases(w, place, row, base);
     for (uint32_t j = 0; row < n && j < n; j++) {
-        if (!w->keep[(size_t)row * n + j])
+        if (!w->kept->keep[(size_t)row * n + j])
             continue;
         const slot_at at = slot_of(h->codec, slot, r);
         /* Two rows never share a word. */
@@ -163,7 +168,8 @@ static void write_place(void *user, uint32_t place) {
             const float s = w->in->matrix->s[c][(size_t)row * n + j];
             float picture;
             if (h->codec == VIT_TRANSFER_SPARSE_LOW_RANK) {
-                to[at.value] |= encoded(s, base[c], STEP_KEPT(c), MOST_KEPT(c)) << SHIFT_KEPT(c);
+                const float above = s * (1.0f - codec_share_left(w->in, w->kept, row, j));
+                to[at.value] |= encoded(above, base[c], STEP_KEPT(c), MOST_KEPT(c)) << SHIFT_KEPT(c);
                 continue;
             }
             codec_bc1_row(w->words, row, c, j, 1, &picture);
@@ -172,7 +178,7 @@ static void write_place(void *user, uint32_t place) {
     }
 }
 
-void codec_encode_sparse(const codec_input *in, const uint8_t *keep, const sparse_shape *shape, uint32_t *words) {
+void codec_encode_sparse(const codec_input *in, const kept_entries *kept, const sparse_shape *shape, uint32_t *words) {
     const vit_transfer *h = header_of(words);
     uint32_t *row_at = words + h->places, first = h->sparse; /* turned round when all is written */
     for (uint32_t i = 0; i < h->stride; i++)
@@ -182,7 +188,7 @@ void codec_encode_sparse(const codec_input *in, const uint8_t *keep, const spars
         words[h->panels + 2 * p + 1] = shape->slots[p];
         first += (shape->slots[p] + 1) / 2 * VIT_TRANSFER_PAIR(h->codec);
     }
-    writing w = {in, keep, row_at, words};
+    writing w = {in, kept, row_at, words};
     parallel_for(in->threads, h->stride, write_place, &w);
     memcpy(row_at, shape->place, h->stride * sizeof *row_at);
 }
@@ -233,13 +239,13 @@ static uint32_t slots_at(const uint32_t *words, uint32_t place) {
 
 float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t chunk, const float *x) {
     const uint32_t place = words[header_of(words)->places + row], slots = slots_at(words, place);
-    float sum = 0.0f;
+    float sum[2] = {0.0f, 0.0f}; /* of even and odd slots */
     for (uint32_t k = chunk * VIT_TRANSFER_CHUNK; k < slots && k < (chunk + 1) * VIT_TRANSFER_CHUNK; k++) {
         uint32_t column;
         const float s = kept(words, place, k, channel, &column);
-        sum = fmaf(s, x[4 * (size_t)column], sum);
+        sum[k % 2] = fmaf(s, x[4 * (size_t)column], sum[k % 2]);
     }
-    return sum;
+    return sum[0] + sum[1];
 }
 
 void codec_sparse_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out) {
