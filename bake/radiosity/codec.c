@@ -62,23 +62,31 @@ bool codec_lay_out(uint32_t codec, uint32_t patches, uint32_t rank, uint64_t spa
 
 /* ---- encoding ---- */
 
+/* Room for all parts, the header in it. */
+static vit_status begin(const codec_input *in, uint32_t rank, const sparse_shape *shape, coded *out, vit_text *why) {
+    vit_transfer h;
+    if (!codec_lay_out(in->codec, in->matrix->count, rank, shape->words, &h))
+        return bake_fail(why, VIT_BAD_INPUT, "a transfer matrix of %u patches is too large to be coded", in->matrix->count);
+    h.sparse_chunks = shape->chunks;
+    out->words = calloc(h.words, sizeof *out->words);
+    if (!out->words)
+        return bake_fail(why, VIT_FAILED, "coded transfer matrix: out of memory");
+    out->count = h.words;
+    memcpy(out->words, &h, sizeof h);
+    return VIT_OK;
+}
+
 static vit_status encode_sparse(const codec_input *in, coded *out, vit_text *why) {
     const uint32_t n = in->matrix->count, rank = in->codec == VIT_TRANSFER_BC1 ? 0 : in->rank ? in->rank : CODEC_RANK(n);
     const double usual = in->codec == VIT_TRANSFER_BC1 ? CODEC_KEEP_BC1 : CODEC_KEEP;
     kept_entries kept = {0};
     sparse_shape shape = {0};
-    vit_transfer h;
     vit_status status = VIT_OK;
     if (!codec_choose(in, in->keep < 0.0 ? usual : in->keep, &kept) || !codec_sparse_shape(in->codec, n, kept.keep, &shape))
         status = bake_fail(why, VIT_FAILED, "coded transfer matrix: out of memory");
-    else if (!codec_lay_out(in->codec, n, rank, shape.words, &h))
-        status = bake_fail(why, VIT_BAD_INPUT, "a transfer matrix of %u patches is too large to be coded", n);
-    else if (!(out->words = calloc(h.words, sizeof *out->words)))
-        status = bake_fail(why, VIT_FAILED, "coded transfer matrix: out of memory");
+    else
+        status = begin(in, rank, &shape, out, why);
     if (status == VIT_OK) {
-        out->count = h.words;
-        h.sparse_chunks = shape.chunks;
-        memcpy(out->words, &h, sizeof h);
         if (in->codec == VIT_TRANSFER_BC1)
             codec_encode_bc1(in, &kept, out->words);
         codec_encode_sparse(in, &kept, &shape, out->words);
@@ -92,16 +100,11 @@ static vit_status encode_sparse(const codec_input *in, coded *out, vit_text *why
 }
 
 static vit_status encode_dense(const codec_input *in, coded *out, vit_text *why) {
-    vit_transfer h;
-    if (!codec_lay_out(in->codec, in->matrix->count, 0, 0, &h))
-        return bake_fail(why, VIT_BAD_INPUT, "a transfer matrix of %u patches is too large to be coded", in->matrix->count);
-    out->words = calloc(h.words, sizeof *out->words);
-    if (!out->words)
-        return bake_fail(why, VIT_FAILED, "coded transfer matrix: out of memory");
-    out->count = h.words;
-    memcpy(out->words, &h, sizeof h);
-    codec_encode_dense(in, out->words);
-    return VIT_OK;
+    const sparse_shape none = {0};
+    const vit_status status = begin(in, 0, &none, out, why);
+    if (status == VIT_OK)
+        codec_encode_dense(in, out->words);
+    return status;
 }
 
 vit_status codec_encode(const codec_input *in, coded *out, vit_text *why) {

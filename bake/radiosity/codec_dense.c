@@ -50,9 +50,9 @@ static void log8_range(const float *row, uint32_t count, uint32_t *base, uint32_
     }
 }
 
-static void pack_row(const packing *p, uint32_t i, uint32_t c, const float *row) {
+static void pack_row(const packing *p, uint32_t i, uint32_t c, const float *row, uint32_t columns) {
     const vit_transfer *h = header_of(p->words);
-    const uint32_t panel = i / PANEL, r = i % PANEL, columns = h->stride;
+    const uint32_t panel = i / PANEL, r = i % PANEL;
     const uint32_t each = h->codec == VIT_TRANSFER_FLOAT32 ? 1 : h->codec == VIT_TRANSFER_FLOAT16 ? 2 : 4;
     const uint32_t bits = 32 / each;
     uint32_t *scale = p->words + h->scale, base = 0, step = STEP_FLOAT16;
@@ -81,7 +81,7 @@ static void pack_panel(void *user, uint32_t panel) {
         for (uint32_t c = 0; c < TRANSFER_CHANNELS; c++) {
             for (uint32_t j = 0; j < stride; j++)
                 row[j] = entry(p->in, c, i, j);
-            pack_row(p, i, c, row);
+            pack_row(p, i, c, row, stride);
         }
 }
 
