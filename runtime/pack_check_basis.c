@@ -1,6 +1,8 @@
 /* pack_check_basis.c: checks what is baked for receivers: every index that the passes relight and estimate use. */
 #include "pack_check.h"
 
+#define MOST_KNOTS (1u << 24) /* times VIT_BASIS_RANK within 32 bits, as the kernel counts */
+
 static vit_status check_receivers(const vit_scene *s, const vit_u32 receiver[3], const char *code, vit_u32 i, vit_text *why) {
     for (int k = 0; k < 3; k++)
         if (receiver[k] >= s->receivers)
@@ -109,14 +111,22 @@ vit_status vit_pack_check_BCOE(const vit_pack *p, vit_text *why) {
     return VIT_OK;
 }
 
+/* Lights ascend within a frame: one that came twice would shine with twice its intensity. A light that lights no receiver has
+ * knots but no coefficients. */
 vit_status vit_pack_check_BFRM(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
     const vit_basis_frame *frames = p->section[VIT_SECTION_BFRM];
+    vit_u32 least = 0;
     for (uint64_t i = 0; i < (uint64_t)s->frames * s->basis_lights; i++) {
         const vit_basis_frame *at = VIT_RECORD(vit_basis_frame, frames, i);
-        if (at->light >= s->lights || !in_range(at->weight, 0.0f, 1.0f) || at->knot > s->basis_coefficients || at->pad != 0)
-            return vit_pack_refuse(why, "section BFRM: record %llu: light %u of %u, knot %u, weight %g", (unsigned long long)i,
-                                   at->light, s->lights, at->knot, (double)at->weight);
+        least = i % s->basis_lights == 0 ? 0 : least;
+        if (at->light < least || at->light >= s->lights)
+            return vit_pack_refuse(why, "section BFRM: record %llu: light %u, expected one of %u..%u", (unsigned long long)i,
+                                   at->light, least, s->lights - 1);
+        if (at->knot > MOST_KNOTS || !in_range(at->weight, 0.0f, 1.0f) || at->pad != 0)
+            return vit_pack_refuse(why, "section BFRM: record %llu: knot %u or weight %g is out of range, or padding not 0",
+                                   (unsigned long long)i, at->knot, (double)at->weight);
+        least = at->light + 1;
     }
     return VIT_OK;
 }

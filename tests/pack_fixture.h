@@ -1,7 +1,8 @@
 /* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
  * light whose photons are baked and a moving point light whose photons are traced, a point a set on area lights and in the sky,
- * which is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Every float is exact in binary, so the
- * pack has the same bytes with every compiler. */
+ * which is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Photons and baked irradiance exclude each
+ * other: fixture_make_basis() has receivers, splits and a basis for both lights in the photons' place. Every float is exact in
+ * binary, so the packs have the same bytes with every compiler. */
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
 
@@ -15,7 +16,13 @@ enum {
     FIXTURE_TRIANGLES = 96,
     FIXTURE_TEXELS = 61,
     FIXTURE_BAKED = 4,
-    FIXTURE_CELLS = 27,
+    FIXTURE_CELLS = 27, /* of zones, or of receivers */
+    FIXTURE_GROUPS = 2,
+    FIXTURE_RECEIVERS = FIXTURE_GROUPS * VIT_BASIS_GROUP,
+    FIXTURE_SPLITS = 2,
+    FIXTURE_WORDS = VIT_BASIS_RANK * VIT_BASIS_GROUP / 2,
+    FIXTURE_KNOTS = 3, /* of the second light; the first has one less */
+    FIXTURE_COEFFICIENTS = VIT_BASIS_RANK * FIXTURE_KNOTS,
     FIXTURE_SKY = 2,
     FIXTURE_POINTS = 2 * VIT_PATTERNS
 };
@@ -35,6 +42,13 @@ typedef struct pack_fixture {
     vit_cell cells[FIXTURE_CELLS];
     vit_light_sample emitters[FIXTURE_POINTS];
     vit_sky_texel sky[(FIXTURE_SKY + 2) * (FIXTURE_SKY + 2)];
+    vit_receiver_cell receiver_cells[FIXTURE_CELLS];
+    vit_receiver_split splits[FIXTURE_SPLITS];
+    vit_receiver receivers[FIXTURE_RECEIVERS];
+    vit_basis_group groups[FIXTURE_GROUPS * FIXTURE_LIGHTS];
+    vit_u32 words[FIXTURE_WORDS];
+    vit_basis_coefficient coefficients[FIXTURE_COEFFICIENTS];
+    vit_basis_frame basis_frames[FIXTURE_FRAMES * FIXTURE_LIGHTS];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -223,6 +237,57 @@ static inline void fixture_make(pack_fixture *f) {
     vit_pack_derive(&f->scene, NULL);
 }
 
+/* Cell 0 of the first side is parted, and so is the last cell. */
+static inline void fixture_receivers(pack_fixture *f) {
+    for (vit_u32 i = 0; i < FIXTURE_CELLS; i++)
+        f->receiver_cells[i] = (vit_receiver_cell){.receiver = {i, i + 1, FIXTURE_RECEIVERS - 1 - i},
+                                                   .split = i == 0                   ? 0
+                                                            : i == FIXTURE_CELLS - 1 ? FIXTURE_SPLITS - 1
+                                                                                     : VIT_NONE};
+    f->splits[0] = (vit_receiver_split){.normal = {0, 1, 0}, .offset = 0.25f, .receiver = {0, FIXTURE_RECEIVERS - 1, 5}};
+    f->splits[1] = (vit_receiver_split){.normal = {0, 0, -1}, .offset = -0.5f, .receiver = {7, 6, 5}};
+    for (vit_u32 i = 0; i < FIXTURE_RECEIVERS; i++)
+        f->receivers[i] = (vit_receiver){.irradiance = {0.25f * (float)i, 0.5f, 0.125f * (float)i}};
+}
+
+/* Ranks of the first group 0 and 2, of the second 3 and the most that there may be; vectors are shared. The first frame lies
+ * between the last knots but one and the last, the second at a knot. */
+static inline void fixture_basis(pack_fixture *f) {
+    f->groups[0] = (vit_basis_group){.first_word = FIXTURE_WORDS, .first_coefficient = FIXTURE_COEFFICIENTS};
+    f->groups[1] = (vit_basis_group){.first_word = VIT_BASIS_GROUP, .rank = 2};
+    f->groups[2] = (vit_basis_group){.rank = 3, .first_coefficient = FIXTURE_COEFFICIENTS - 3 * (FIXTURE_KNOTS - 1)};
+    f->groups[3] = (vit_basis_group){.rank = VIT_BASIS_RANK};
+    for (vit_u32 i = 0; i < FIXTURE_WORDS; i++)
+        f->words[i] = i * 0x9e3779b1u;
+    f->words[0] = 0x80008000u; /* the least numbers */
+    for (vit_u32 i = 0; i < FIXTURE_COEFFICIENTS; i++)
+        f->coefficients[i] = (vit_basis_coefficient){.rgb = {0x1p-16f, (float)i * 0x1p-20f, -0x1p-18f}};
+    for (vit_u32 i = 0; i < FIXTURE_LIGHTS; i++) {
+        f->basis_frames[i] = (vit_basis_frame){.light = i, .knot = FIXTURE_KNOTS - 3 + i, .weight = i ? 1.0f : 0.25f};
+        f->basis_frames[FIXTURE_LIGHTS + i] = (vit_basis_frame){.light = i, .knot = FIXTURE_KNOTS - 2 + i};
+    }
+}
+
+/* fixture_make() with the effects BASIS and RELIGHT for PHOTONS and all that needs them. */
+static inline void fixture_make_basis(pack_fixture *f) {
+    fixture_make(f);
+    f->scene.effects = (f->scene.effects & ~vit_effects_upon(VIT_BIT(PHOTONS))) | VIT_BIT(BASIS) | VIT_BIT(RELIGHT);
+    f->scene.paths = f->scene.baked = f->scene.cells = 0;
+    f->scene.receiver_cells = FIXTURE_CELLS;
+    f->scene.receiver_splits = FIXTURE_SPLITS;
+    f->scene.receivers = FIXTURE_RECEIVERS;
+    f->scene.basis_lights = FIXTURE_LIGHTS;
+    f->scene.basis_words = FIXTURE_WORDS;
+    f->scene.basis_coefficients = FIXTURE_COEFFICIENTS;
+    for (vit_u32 i = 0; i < FIXTURE_FRAMES * FIXTURE_LIGHTS; i++)
+        f->lights[i].path_count = 0;
+    for (vit_u32 i = 0; i < FIXTURE_FRAMES; i++)
+        f->golds[i] = (vit_gold){.xrgb8888 = {i + 1, 2}};
+    fixture_receivers(f);
+    fixture_basis(f);
+    vit_pack_derive(&f->scene, NULL);
+}
+
 /* Replaces the cube by `depth` + 1 triangles side by side and a tree that is a chain of `depth` inner nodes (1..95). */
 static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
     fixture_make(f);
@@ -244,23 +309,23 @@ static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
     f->scene.nodes = depth;
 }
 
+/* Where the fixture has what goes into the sections. */
+static inline pack_sections fixture_sections(const pack_fixture *f) {
+    return (pack_sections){
+        .data = {
+            [VIT_SECTION_META] = &f->scene,    [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
+            [VIT_SECTION_GEOM] = f->triangles, [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
+            [VIT_SECTION_MATL] = f->materials, [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
+            [VIT_SECTION_ATLS] = f->texels,    [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
+            [VIT_SECTION_EMIT] = f->emitters,  [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
+            [VIT_SECTION_RSPL] = f->splits,    [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
+            [VIT_SECTION_BWRD] = f->words,     [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
+            [VIT_SECTION_PHOT] = f->photons,   [VIT_SECTION_GOLD] = f->golds,
+        }};
+}
+
 static inline vit_status fixture_assemble(const pack_fixture *f, void **bytes, size_t *size, vit_text *why) {
-    const pack_sections sections = {.data = {[VIT_SECTION_META] = &f->scene,
-                                             [VIT_SECTION_CAMS] = f->cameras,
-                                             [VIT_SECTION_LITE] = f->lights,
-                                             [VIT_SECTION_GEOM] = f->triangles,
-                                             [VIT_SECTION_ATTR] = f->attributes,
-                                             [VIT_SECTION_BVHN] = f->nodes,
-                                             [VIT_SECTION_MATL] = f->materials,
-                                             [VIT_SECTION_TEXR] = f->textures,
-                                             [VIT_SECTION_MIPS] = f->mips,
-                                             [VIT_SECTION_ATLS] = f->texels,
-                                             [VIT_SECTION_SIDE] = f->sides,
-                                             [VIT_SECTION_CELL] = f->cells,
-                                             [VIT_SECTION_EMIT] = f->emitters,
-                                             [VIT_SECTION_SKYT] = f->sky,
-                                             [VIT_SECTION_PHOT] = f->photons,
-                                             [VIT_SECTION_GOLD] = f->golds}};
+    const pack_sections sections = fixture_sections(f);
     return pack_assemble(&sections, bytes, size, why);
 }
 

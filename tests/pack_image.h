@@ -33,6 +33,13 @@ typedef struct image {
     vit_cell *cells;
     vit_light_sample *emitters;
     vit_sky_texel *sky;
+    vit_receiver_cell *receiver_cells;
+    vit_receiver_split *splits;
+    vit_receiver *receivers;
+    vit_basis_group *groups;
+    vit_u32 *words;
+    vit_basis_coefficient *coefficients;
+    vit_basis_frame *basis_frames;
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -60,18 +67,36 @@ static inline image image_of(const pack_fixture *f) {
     im.cells = section(&im, VIT_SECTION_CELL);
     im.emitters = section(&im, VIT_SECTION_EMIT);
     im.sky = section(&im, VIT_SECTION_SKYT);
+    im.receiver_cells = section(&im, VIT_SECTION_RCEL);
+    im.splits = section(&im, VIT_SECTION_RSPL);
+    im.receivers = section(&im, VIT_SECTION_RECV);
+    im.groups = section(&im, VIT_SECTION_BGRP);
+    im.words = section(&im, VIT_SECTION_BWRD);
+    im.coefficients = section(&im, VIT_SECTION_BCOE);
+    im.basis_frames = section(&im, VIT_SECTION_BFRM);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;
 }
 
-static inline image valid_image(void) {
+/* The fixtures: between them no section is empty. */
+typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_KINDS } fixture_kind;
+
+static inline void fixture_make_kind(pack_fixture *f, fixture_kind kind) {
+    kind == FIXTURE_BASIS ? fixture_make_basis(f) : fixture_make(f);
+}
+
+static inline image valid_image_of(fixture_kind kind) {
     pack_fixture *f = malloc(sizeof *f);
     assert_non_null(f);
-    fixture_make(f);
+    fixture_make_kind(f, kind);
     image im = image_of(f);
     free(f);
     return im;
+}
+
+static inline image valid_image(void) {
+    return valid_image_of(FIXTURE_PHOTONS);
 }
 
 /* Makes every hash right again, as far as the table's places lie in the file. */

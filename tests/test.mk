@@ -64,7 +64,7 @@ test: deps
 	@VITRINE_RESULTS=$(RESULTS) $(MAKE) $(SIDE_BY_SIDE) run-tests
 	@tests/total.sh $(RESULTS) $(RUNS:run/%=%) $(SANITIZED_PLAYS)
 # Bad input under the address and undefined behaviour sanitizers.
-SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_save scene scene_mistakes transfer) fuzz/test_fuzz_corpus)
+SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_forged_basis pack_save scene scene_mistakes transfer) fuzz/test_fuzz_corpus)
 RUNS += $(filter-out $(RUNS),$(SANITIZED:%=run/build/sanitize/%))
 build-sanitized: $(SANITIZED:%=$(B)/%) $(B)/vitrine-play
 # The kernels as C, too: packs that hold each effect between them, baked by the release's baker.

@@ -1,68 +1,84 @@
-/* The pack: writer and loader together, on a valid pack and on plain damage (cut files, flipped bits), which must always be
- * refused. Damage behind right hashes is test_pack_forged.c's. */
+/* The pack: writer and loader together, on two valid packs, which have every section between them, and on plain damage (cut
+ * files, flipped bits), which must always be refused. Damage behind right hashes is test_pack_forged.c's and
+ * test_pack_forged_basis.c's. */
 #include "pack_image.h"
 
 #include <float.h>
 
-/* XXH3-64 of the fixture's pack in format version 6. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
- * and put the new hash here. */
-#define GOLDEN_PACK_HASH 0xd0f74ebfad8beaf3u
+/* XXH3-64 of the fixtures' packs in format version 6. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
+ * and put the new hashes here. */
+static const uint64_t golden_hashes[FIXTURE_KINDS] = {0xd0f74ebfad8beaf3u, 0x7b780a646e84e4bau};
+
+#define EACH_KIND(kind) for (fixture_kind kind = 0; kind < FIXTURE_KINDS; kind++)
 
 static void a_valid_pack_is_accepted_and_its_sections_are_found_in_place(void **state) {
     (void)state;
-    image im = valid_image();
-    vit_pack pack;
-    vit_text why = {""};
-    vit_status status = vit_pack_read(im.bytes, im.size, &pack, &why);
-    assert_string_equal(why.text, "");
-    assert_int_equal(status, VIT_OK);
-    assert_ptr_equal(pack.scene, im.scene);
-    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
-        assert_ptr_equal(pack.section[i], im.table[i].size > 0 ? section(&im, i) : NULL);
-        assert_int_equal(pack.bytes[i], im.table[i].size);
+    EACH_KIND(kind) {
+        image im = valid_image_of(kind);
+        vit_pack pack;
+        vit_text why = {""};
+        vit_status status = vit_pack_read(im.bytes, im.size, &pack, &why);
+        assert_string_equal(why.text, "");
+        assert_int_equal(status, VIT_OK);
+        assert_ptr_equal(pack.scene, im.scene);
+        for (int i = 0; i < VIT_SECTION_COUNT; i++) {
+            assert_ptr_equal(pack.section[i], im.table[i].size > 0 ? section(&im, i) : NULL);
+            assert_int_equal(pack.bytes[i], im.table[i].size);
+        }
+        free(im.bytes);
     }
-    free(im.bytes);
+}
+
+static void the_fixtures_have_every_section_between_them(void **state) {
+    (void)state;
+    image photons = valid_image_of(FIXTURE_PHOTONS), basis = valid_image_of(FIXTURE_BASIS);
+    for (int i = 0; i < VIT_SECTION_COUNT; i++)
+        assert_true(photons.table[i].size > 0 || basis.table[i].size > 0);
+    free(photons.bytes);
+    free(basis.bytes);
 }
 
 static void the_bytes_that_were_written_are_the_bytes_that_are_read(void **state) {
     (void)state;
-    pack_fixture f;
-    fixture_make(&f);
-    image im = image_of(&f);
-    vit_pack pack;
-    vit_text why = {""};
-    assert_int_equal(vit_pack_read(im.bytes, im.size, &pack, &why), VIT_OK);
-    const void *written[VIT_SECTION_COUNT] = {
-        [VIT_SECTION_META] = &f.scene,    [VIT_SECTION_CAMS] = f.cameras,    [VIT_SECTION_LITE] = f.lights,
-        [VIT_SECTION_GEOM] = f.triangles, [VIT_SECTION_ATTR] = f.attributes, [VIT_SECTION_BVHN] = f.nodes,
-        [VIT_SECTION_MATL] = f.materials, [VIT_SECTION_TEXR] = f.textures,   [VIT_SECTION_MIPS] = f.mips,
-        [VIT_SECTION_ATLS] = f.texels,    [VIT_SECTION_SIDE] = f.sides,      [VIT_SECTION_CELL] = f.cells,
-        [VIT_SECTION_EMIT] = f.emitters,  [VIT_SECTION_SKYT] = f.sky,        [VIT_SECTION_PHOT] = f.photons,
-        [VIT_SECTION_GOLD] = f.golds};
-    for (int i = 0; i < VIT_SECTION_COUNT; i++)
-        if (pack.bytes[i] > 0)
-            assert_memory_equal(pack.section[i], written[i], pack.bytes[i]);
-    assert_int_equal(pack.bytes[VIT_SECTION_BVHN], 5 * sizeof(vit_bvh_node));
-    free(im.bytes);
+    EACH_KIND(kind) {
+        pack_fixture f;
+        fixture_make_kind(&f, kind);
+        image im = image_of(&f);
+        vit_pack pack;
+        vit_text why = {""};
+        assert_int_equal(vit_pack_read(im.bytes, im.size, &pack, &why), VIT_OK);
+        const pack_sections written = fixture_sections(&f);
+        for (int i = 0; i < VIT_SECTION_COUNT; i++)
+            if (pack.bytes[i] > 0)
+                assert_memory_equal(pack.section[i], written.data[i], pack.bytes[i]);
+        assert_int_equal(pack.bytes[VIT_SECTION_BVHN], 5 * sizeof(vit_bvh_node));
+        assert_int_equal(pack.bytes[VIT_SECTION_BGRP], kind == FIXTURE_BASIS ? 4 * sizeof(vit_basis_group) : 0);
+        assert_int_equal(pack.bytes[VIT_SECTION_BFRM], kind == FIXTURE_BASIS ? 4 * sizeof(vit_basis_frame) : 0);
+        free(im.bytes);
+    }
 }
 
 static void assembling_twice_gives_the_same_bytes(void **state) {
     (void)state;
-    image a = valid_image(), b = valid_image();
-    assert_int_equal(a.size, b.size);
-    assert_memory_equal(a.bytes, b.bytes, a.size);
-    free(a.bytes);
-    free(b.bytes);
+    EACH_KIND(kind) {
+        image a = valid_image_of(kind), b = valid_image_of(kind);
+        assert_int_equal(a.size, b.size);
+        assert_memory_equal(a.bytes, b.bytes, a.size);
+        free(a.bytes);
+        free(b.bytes);
+    }
 }
 
 static void the_format_has_not_changed_without_a_new_version(void **state) {
     (void)state;
-    image im = valid_image();
     assert_int_equal(VIT_PACK_VERSION, 6);
-    uint64_t hash = vit_hash(im.bytes, im.size);
-    if (hash != GOLDEN_PACK_HASH)
-        fail_msg("the fixture's pack hashes to 0x%016llx", (unsigned long long)hash);
-    free(im.bytes);
+    EACH_KIND(kind) {
+        image im = valid_image_of(kind);
+        uint64_t hash = vit_hash(im.bytes, im.size);
+        if (hash != golden_hashes[kind])
+            fail_msg("the pack of fixture %d hashes to 0x%016llx", (int)kind, (unsigned long long)hash);
+        free(im.bytes);
+    }
 }
 
 static void the_hash_is_xxh3_64(void **state) {
@@ -150,9 +166,8 @@ static image cut(const image *im, size_t size) {
     return c;
 }
 
-static void a_file_cut_at_or_inside_any_section_is_refused(void **state) {
-    (void)state;
-    image im = valid_image();
+static void refuses_cuts_of_every_section(fixture_kind kind) {
+    image im = valid_image_of(kind);
     vit_text why;
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
         const vit_pack_entry e = im.table[i];
@@ -170,6 +185,11 @@ static void a_file_cut_at_or_inside_any_section_is_refused(void **state) {
         }
     }
     free(im.bytes);
+}
+
+static void a_file_cut_at_or_inside_any_section_is_refused(void **state) {
+    (void)state;
+    EACH_KIND(kind) refuses_cuts_of_every_section(kind);
 }
 
 static void a_file_cut_inside_header_or_table_is_refused(void **state) {
@@ -201,9 +221,8 @@ static void a_file_with_bytes_behind_its_end_is_refused(void **state) {
     free(longer.bytes);
 }
 
-static void no_bit_can_flip_unnoticed(void **state) {
-    (void)state;
-    image im = valid_image();
+static void notices_each_flip(fixture_kind kind) {
+    image im = valid_image_of(kind);
     unsigned char *bytes = im.bytes;
     vit_text why;
     const size_t table_end = sizeof *im.header + VIT_SECTION_COUNT * sizeof *im.table;
@@ -228,6 +247,11 @@ static void no_bit_can_flip_unnoticed(void **state) {
     free(im.bytes);
 }
 
+static void no_bit_can_flip_unnoticed(void **state) {
+    (void)state;
+    EACH_KIND(kind) notices_each_flip(kind);
+}
+
 static void a_pack_that_is_not_aligned_in_memory_is_refused(void **state) {
     (void)state;
     image im = valid_image();
@@ -245,6 +269,7 @@ static void a_pack_that_is_not_aligned_in_memory_is_refused(void **state) {
 int main(void) {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_valid_pack_is_accepted_and_its_sections_are_found_in_place),
+        cmocka_unit_test(the_fixtures_have_every_section_between_them),
         cmocka_unit_test(the_bytes_that_were_written_are_the_bytes_that_are_read),
         cmocka_unit_test(assembling_twice_gives_the_same_bytes),
         cmocka_unit_test(the_format_has_not_changed_without_a_new_version),

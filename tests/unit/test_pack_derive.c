@@ -125,12 +125,33 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
         const char *name;
         size_t offset;
         vit_u32 least, most;
-    } limits[] = {
-        LIMIT(width, 1, 7680),        LIMIT(height, 1, 4320),       LIMIT(frames, 1, 100000),  LIMIT(triangles, 300, 1 << 27),
-        LIMIT(nodes, 1, 1000),        LIMIT(materials, 1, 1 << 24), LIMIT(textures, 0, 65536), LIMIT(mips, 0, 65536 * 15),
-        LIMIT(texels, 0, 0x7fffffff), LIMIT(lights, 0, 64),         LIMIT(paths, 0, 1000000),  LIMIT(bounces, 1, 32),
-        LIMIT(slice_count, 1, 4096),  LIMIT(tile, 8, 64),           LIMIT(chain, 0, 32),       LIMIT(area_samples, 0, 1024),
-        LIMIT(sky_samples, 0, 1024),  LIMIT(sky_size, 0, 2048),     LIMIT(copies, 1, 16)};
+    } limits[] = {LIMIT(width, 1, 7680),
+                  LIMIT(height, 1, 4320),
+                  LIMIT(frames, 1, 100000),
+                  LIMIT(triangles, 300, 1 << 27),
+                  LIMIT(nodes, 1, 1000),
+                  LIMIT(materials, 1, 1 << 24),
+                  LIMIT(textures, 0, 65536),
+                  LIMIT(mips, 0, 65536 * 15),
+                  LIMIT(texels, 0, 0x7fffffff),
+                  LIMIT(lights, 0, 64),
+                  LIMIT(paths, 0, 1000000),
+                  LIMIT(bounces, 1, 32),
+                  LIMIT(slice_count, 1, 4096),
+                  LIMIT(tile, 8, 64),
+                  LIMIT(chain, 0, 32),
+                  LIMIT(area_samples, 0, 1024),
+                  LIMIT(sky_samples, 0, 1024),
+                  LIMIT(sky_size, 0, 2048),
+                  LIMIT(copies, 1, 16),
+                  LIMIT(cells, 0, 0xffffff),
+                  LIMIT(baked, 0, 1 << 25),
+                  LIMIT(receiver_cells, 0, 0xffffff),
+                  LIMIT(receiver_splits, 0, 0xffffff),
+                  LIMIT(receivers, 0, 1 << 24),
+                  LIMIT(basis_lights, 0, 3),
+                  LIMIT(basis_words, 0, 1 << 28),
+                  LIMIT(basis_coefficients, 0, 1 << 28)};
 #undef LIMIT
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
         for (int k = 0; k < 4; k++) {
@@ -139,10 +160,26 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
                 continue;
             vit_scene s = full_hd();
             vit_text why = {""};
+            s.paths = 0;
+            s.lights = 3;
             memcpy((char *)&s + limits[i].offset, &values[k], sizeof values[k]);
             if (vit_pack_derive(&s, &why) != (k < 2 ? VIT_OK : VIT_BAD_INPUT) || (k >= 2 && why.text[0] == 0))
                 fail_msg("%s = %u: '%s'", limits[i].name, values[k], why.text);
         }
+}
+
+/* So that the pass relight's work-items have whole groups, at any number of lanes. */
+static void receivers_come_in_whole_groups(void **state) {
+    (void)state;
+    vit_scene s = full_hd();
+    vit_text why = {""};
+    s.receivers = 768;
+    assert_int_equal(vit_pack_derive(&s, &why), VIT_OK);
+    for (vit_u32 less = 1; less < 256; less += less + 1) {
+        s.receivers = 768 - less;
+        assert_int_equal(vit_pack_derive(&s, &why), VIT_BAD_INPUT);
+        assert_non_null(strstr(why.text, "receivers must be a multiple of 256"));
+    }
 }
 
 static void deriving_twice_changes_nothing(void **state) {
@@ -163,6 +200,7 @@ int main(void) {
         cmocka_unit_test(keys_may_have_30_bits_but_not_31),
         cmocka_unit_test(photon_slots_may_number_2_to_the_25th_but_not_one_more),
         cmocka_unit_test(every_count_has_limits_and_names_itself_beyond_them),
+        cmocka_unit_test(receivers_come_in_whole_groups),
         cmocka_unit_test(deriving_twice_changes_nothing),
     };
     return cmocka_run_group_tests_name("derived fields", tests, NULL, NULL);

@@ -1,17 +1,12 @@
 /* The loader against forged packs: a valid pack is spoilt in one place and gets right hashes again, so that the checks behind
  * the hashes are reached. Each must be refused for its own reason, in one line that names the section; the part of the line
  * stands beside the damage, so that no fault can hide behind another. Run it with config=sanitize as well. */
-#include "pack_image.h"
+#include "forged_pack.h"
 
 #include <float.h>
 #include <math.h>
 
 /* X(place, name, part of the line, damage done to `im`) */
-
-#define ADD(count, by) im->scene->count += by
-#define EFFECTS(on, off) im->scene->effects = (im->scene->effects | (on)) & ~(vit_u64)(off)
-#define BIT(name) VIT_BIT(name)
-#define ENTRY(code) im->table[VIT_SECTION_##code]
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
@@ -397,69 +392,21 @@ FAULTS(X)
 LIMITS(X)
 #undef X
 
-typedef struct fault {
-    const char *place, *cause;
-    void (*spoil)(image *im);
-} fault;
-
 static fault faults[] = {
-#define X(place, name, cause, ...) {#place, cause, spoil_##place##_##name},
+#define X(place, name, cause, ...) {FIXTURE_PHOTONS, #place, cause, spoil_##place##_##name},
     FAULTS(X)
 #undef X
 };
 
 static fault limits[] = {
-#define X(name, ...) {0, 0, limit_##name},
+#define X(name, ...) {FIXTURE_PHOTONS, 0, 0, limit_##name},
     LIMITS(X)
 #undef X
 };
 
-static void a_pack_just_inside_a_limit_is_accepted(void **state) {
-    const fault *f = *state;
-    image im = valid_image();
-    f->spoil(&im);
-    forge(&im);
-    vit_text why;
-    vit_status status = read_image(&im, &why);
-    assert_string_equal(why.text, "");
-    assert_int_equal(status, VIT_OK);
-    free(im.bytes);
-}
-
-static void a_forged_pack_is_refused_for_its_own_reason(void **state) {
-    const fault *f = *state;
-    image im = valid_image();
-    f->spoil(&im);
-    forge(&im);
-    vit_text why;
-    assert_refused(read_image(&im, &why), &why, f->place, f->cause);
-    free(im.bytes);
-}
-
 static void any_word_may_have_any_value_without_bringing_the_loader_down(void **state) {
     (void)state;
-    static const uint32_t values[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x7f800000 /* inf */, 0x7fc00000 /* NaN */};
-    image im = valid_image();
-    vit_text why;
-    size_t refused = 0;
-    for (int i = 0; i < VIT_SECTION_COUNT; i++) {
-        uint32_t *words = section(&im, i);
-        for (size_t w = 0; w < im.table[i].size / 4; w++)
-            for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
-                const uint32_t before = words[w];
-                words[w] = values[v];
-                forge(&im);
-                if (read_image(&im, &why) != VIT_OK) {
-                    assert_one_line(&why);
-                    refused++;
-                }
-                words[w] = before;
-            }
-    }
-    assert_true(refused > 1000);
-    forge(&im);
-    assert_int_equal(read_image(&im, &why), VIT_OK);
-    free(im.bytes);
+    any_word_has_any_value(FIXTURE_PHOTONS, 1000);
 }
 
 int main(void) {

@@ -2,6 +2,7 @@
  * the magic number; read as it is and again with its hashes made right) or a script of edits to a good one:
  *
  *   chain N             begin from a deep tree of N nodes rather than from the cube
+ *   basis               begin from the cube with receivers and a basis rather than with photons
  *   plain               leave META's derived fields and the sections' sizes as they were: otherwise they follow META's counts
  *   CODE INDEX = HEX    word INDEX of section CODE (modulo its words); "+" adds, "^" flips bits
  *   HEAD, TABL, FILE    instead of CODE: the header, the section table, the whole file
@@ -41,7 +42,7 @@ typedef struct script {
     edit edits[MAX_EDITS];
     int count;
     uint32_t chain, cut;
-    bool plain, kept;
+    bool basis, plain, kept;
 } script;
 
 /* ---- reading a script ---- */
@@ -51,6 +52,7 @@ static void read_line(script *s, const char *line) {
     edit e;
     if (sscanf(line, "chain %u", &s->chain) == 1 || sscanf(line, "cut %u", &s->cut) == 1)
         return;
+    s->basis |= strcmp(line, "basis") == 0;
     s->plain |= strcmp(line, "plain") == 0;
     s->kept |= strcmp(line, "kept") == 0;
     if (s->count == MAX_EDITS || sscanf(line, "%4s %u %c %x", code, &e.index, &e.how, &e.value) != 4)
@@ -123,9 +125,7 @@ static void *resized(const void *from, uint64_t have, uint64_t want) {
 
 /* Sections by the edited META, or as they were. */
 static bool fill_sections(const script *sc, const pack_fixture *f, forged *out) {
-    const void *from[VIT_SECTION_COUNT] = {&f->scene,    f->cameras,  f->lights,  f->triangles, f->attributes, f->nodes,
-                                           f->materials, f->textures, f->mips,    f->texels,    f->sides,      f->cells,
-                                           f->emitters,  f->sky,      f->photons, f->golds};
+    const pack_sections from = fixture_sections(f);
     uint64_t have[VIT_SECTION_COUNT], want[VIT_SECTION_COUNT];
     vit_scene s = f->scene;
     apply(sc, VIT_SECTION_META, &s, sizeof s);
@@ -134,7 +134,7 @@ static bool fill_sections(const script *sc, const pack_fixture *f, forged *out) 
     count_bytes(&f->scene, have);
     count_bytes(sc->plain ? &f->scene : &s, want);
     for (int i = 0; i < VIT_SECTION_COUNT; i++) {
-        out->section[i] = resized(i == VIT_SECTION_META ? &s : from[i], have[i], want[i]);
+        out->section[i] = resized(i == VIT_SECTION_META ? &s : from.data[i], have[i], want[i]);
         if (!out->section[i])
             return false;
         if (i != VIT_SECTION_META)
@@ -217,10 +217,53 @@ static void follow_material(const vit_pack *p, uint32_t index) {
 static void follow_cells(const vit_pack *p, uint32_t triangle) {
     const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
     const vit_cell *cells = p->section[VIT_SECTION_CELL];
-    for (uint32_t side = 2 * triangle; p->scene->cells && side < 2 * triangle + 2; side++) {
+    const vit_u32 count = p->scene->effects & VIT_BIT(BASIS) ? p->scene->receiver_cells : p->scene->cells;
+    for (uint32_t side = 2 * triangle; count && side < 2 * triangle + 2; side++) {
         const vit_u32 n = sides[side] >> VIT_SIDE_PARTS_SHIFT, first = sides[side] & VIT_SIDE_CELL;
-        FUZZ_HOLDS(n >= 1 && first + n * n <= p->scene->cells);
-        sum += cells[first].word + cells[first + n * n - 1].word;
+        FUZZ_HOLDS(n >= 1 && first + n * n <= count);
+        sum += cells ? cells[first].word + cells[first + n * n - 1].word : 0;
+    }
+}
+
+static void follow_receivers(const vit_pack *p, const vit_u32 receiver[3]) {
+    const vit_receiver *receivers = p->section[VIT_SECTION_RECV];
+    for (int k = 0; k < 3; k++) {
+        FUZZ_HOLDS(receiver[k] < p->scene->receivers);
+        sum += receivers[receiver[k]].irradiance[0] > 1.0f;
+    }
+}
+
+static void follow_receiver_cells(const vit_pack *p) {
+    const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
+    const vit_receiver_split *splits = p->section[VIT_SECTION_RSPL];
+    for (vit_u32 i = 0; i < p->scene->receiver_cells; i++) {
+        follow_receivers(p, cells[i].receiver);
+        FUZZ_HOLDS(cells[i].split == VIT_NONE || cells[i].split < p->scene->receiver_splits);
+        if (cells[i].split != VIT_NONE)
+            follow_receivers(p, splits[cells[i].split].receiver);
+    }
+}
+
+/* As the pass relight does, in its 32-bit numbers. */
+static void follow_basis(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_basis_group *groups = p->section[VIT_SECTION_BGRP];
+    const vit_u32 *words = p->section[VIT_SECTION_BWRD];
+    const vit_basis_coefficient *coefficients = p->section[VIT_SECTION_BCOE];
+    const vit_basis_frame *frames = p->section[VIT_SECTION_BFRM];
+    for (vit_u32 i = 0; i < s->frames * s->basis_lights; i++) {
+        const vit_basis_frame *at = frames + i;
+        FUZZ_HOLDS(at->light < s->lights && at->weight >= 0.0f && at->weight <= 1.0f);
+        for (vit_u32 g = 0; g < s->receivers / VIT_BASIS_GROUP; g++) {
+            const vit_basis_group *b = groups + g * s->basis_lights + i % s->basis_lights;
+            const vit_u32 first = b->first_coefficient + at->knot * b->rank, last = first + b->rank - 1,
+                          word = b->first_word + b->rank * (VIT_BASIS_GROUP / 2) - 1;
+            if (b->rank == 0)
+                continue;
+            FUZZ_HOLDS(last < s->basis_coefficients && last + (at->weight > 0.0f ? b->rank : 0) < s->basis_coefficients);
+            FUZZ_HOLDS(first >= b->first_coefficient && word < s->basis_words);
+            sum += words[b->first_word] + words[word] + (coefficients[first].rgb[0] > coefficients[last].rgb[2]);
+        }
     }
 }
 
@@ -271,6 +314,8 @@ static void read_pack(const unsigned char *bytes, size_t size) {
         return;
     }
     FUZZ_HOLDS(follow_tree(&pack) == pack.scene->triangles);
+    follow_receiver_cells(&pack);
+    follow_basis(&pack);
     check_needs(&(vit_open_info){.pack = bytes, .pack_size = size});
     check_needs(&(vit_open_info){.pack = bytes,
                                  .pack_size = size,
@@ -304,6 +349,8 @@ void fuzz_pack(const uint8_t *data, size_t size) {
     read_script(&s, data, size);
     if (s.chain > 0)
         fixture_make_chain(f, 1 + (s.chain - 1) % (FIXTURE_TRIANGLES - 1));
+    else if (s.basis)
+        fixture_make_basis(f);
     else
         fixture_make(f);
     vit_pack_derive(&f->scene, NULL);

@@ -18,6 +18,9 @@ static const char codes[][5] = {
     "MIPS",
     "TEXR",
     "SIDE",
+    "RCEL",
+    "BGRP",
+    "BFRM",
 };
 
 static const uint32_t values[] = {
@@ -53,6 +56,8 @@ static int new_line(char *line, size_t room, uint64_t *state) {
         value = next(state) >> next(state) % 32;
     if (kind == 0)
         return snprintf(line, room, "chain %u\n", 1 + next(state) % 95);
+    if (kind == 3)
+        return snprintf(line, room, "basis\n");
     if (kind == 1)
         return snprintf(line, room, next(state) % 2 ? "plain\n" : "kept\n");
     if (kind == 2)
