@@ -8,11 +8,10 @@
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
         global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,      \
         global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,      \
-        global const uint *albedo, global const float *position, global const uint *normal, ESTIMATE_BAKED,                    \
-        RECEIVER_PARAMETERS
+        global const uint *albedo, global const float *position, global const uint *normal, ESTIMATE_BAKED
 #define INDIRECT_ARGUMENTS                                                                                                     \
     scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, albedo,     \
-        position, normal, accept, inverse_area, RECEIVER_ARGUMENTS
+        position, normal, accept, inverse_area
 
 /* Keys of samples: negative where they get no indirect light, nothing hit or a dark side. Samples of one key are best estimated
  * together: of photons, those of a cluster. */
@@ -32,8 +31,6 @@ static inline li indirect_keys_at(global const uint *keys, global const uint *al
 
 /* Irradiance of the lanes' samples, W/m2; 0 where the key is negative. at: their numbers. */
 static inline lv3 indirect_gather(INDIRECT_PARAMETERS, li key, const estimate_sample *sample, li at WORK_PASSED) {
-    if (VIT_EFFECT_BASIS)
-        return receiver_gather(RECEIVER_ARGUMENTS, key, sample, at);
     if (VIT_EFFECT_LIST)
         return estimate_gather(ESTIMATE_ARGUMENTS, key, sample WORK_PASS);
     li x, y;
@@ -41,7 +38,7 @@ static inline lv3 indirect_gather(INDIRECT_PARAMETERS, li key, const estimate_sa
     return bucket_gather(BUCKET_ARGUMENTS, key, sample, x, y WORK_PASS);
 }
 
-#if VIT_WITH(INDIRECT) && VIT_WITH_DENSE
+#if VIT_WITH(PHOTONS) && VIT_WITH_DENSE
 kernel void estimate_all(INDIRECT_PARAMETERS, global float *indirect WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)

@@ -1,5 +1,10 @@
 /* Baked indirect light (METHODS.md, "Irradiance basis"): the pass relight brings receivers' irradiance up to where the frame's
- * lights are; samples interpolate between the three receivers of their cell. */
+ * lights are; the pass samples interpolates between the three receivers of their cell. */
+
+/* What of it a kernel reads: buffers that the pack's effects do not call for are NULL. */
+#define RECEIVER_PARAMETERS                                                                                                    \
+    global const uint *receiver_cells, global const vit_receiver_split *receiver_splits, global const float *receivers,        \
+        global const float *relit
 
 #if VIT_WITH(RELIGHT)
 #define RELIGHT_HALF (VIT_BASIS_GROUP / 2) /* words of a vector: receivers i and i + RELIGHT_HALF of the group share word i */
@@ -53,69 +58,35 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
 }
 #endif
 
-#define RECEIVER_PARAMETERS                                                                                                    \
-    global const vit_triangle *triangles, global const uint *hit_triangle, global const uint *sides,                           \
-        global const uint *receiver_cells, global const float *receiver_splits, global const float *receivers,                 \
-        global const float *relit
-#define RECEIVER_ARGUMENTS triangles, hit_triangle, sides, receiver_cells, receiver_splits, receivers, relit
-
-/* Barycentric weights of the lanes' places p in their triangles, and whether they are on the back: normals s say. Neighbours
- * mostly share a triangle: each is read once. */
-static inline void receiver_place(global const vit_triangle *triangles, li lanes, li triangle, lv3 p, lv3 s, lf *b1, lf *b2,
-                                  li *back) {
-    *b1 = *b2 = L_F(0);
-    *back = L_I(0);
+/* Irradiance, W/m2, of the lanes' places p, at barycentric weights b1, b2 of a side of a triangle (back: -1 for the back); 0
+ * elsewhere. Neighbours mostly share a cell: each is read once. */
+static inline lv3 receivers_light(global const uint *sides, global const uint *cells, global const vit_receiver_split *splits,
+                                  global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p) {
+    cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
+    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     li own;
     while (l_any(lanes)) {
-        global const vit_triangle *t = triangles + surface_next(&lanes, triangle, &own);
-        float largest = vit_max(vit_max(fabs(t->nx), vit_max(fabs(t->ny), fabs(t->nz))), 1e-37f);
-        float inverse = vit_div(1.0f, largest), nx = t->nx * inverse, ny = t->ny * inverse, nz = t->nz * inverse,
-              scale = vit_div(inverse, fma(nz, nz, fma(ny, ny, nx * nx)));
-        float ax = t->v1[0] - t->v0[0], ay = t->v1[1] - t->v0[1], az = t->v1[2] - t->v0[2];
-        float bx = t->v2[0] - t->v0[0], by = t->v2[1] - t->v0[1], bz = t->v2[2] - t->v0[2];
-        /* (q x b) . n = q . (b x n), and (a x q) . n = q . (n x a) */
-        float ux = by * nz - bz * ny, uy = bz * nx - bx * nz, uz = bx * ny - by * nx;
-        float vx = ny * az - nz * ay, vy = nz * ax - nx * az, vz = nx * ay - ny * ax;
-        lv3 q = lv3_sub(p, lv3_load(t->v0));
-        *b1 = l_sel(own, l_max(L_F(0), fma(q.z, L_F(uz), fma(q.y, L_F(uy), q.x * ux)) * scale), *b1);
-        *b2 = l_sel(own, l_max(L_F(0), fma(q.z, L_F(vz), fma(q.y, L_F(vy), q.x * vx)) * scale), *b2); /* no NaN either */
-        lf facing = fma(s.z, L_F(nz), fma(s.y, L_F(ny), s.x * nx));
-        *back = l_sel_i(own, L_LT(facing, L_F(0)), *back);
+        global const uint *cell = cells + (size_t)surface_next(&lanes, at.index, &own) * 4;
+        global const uint *of = cell;
+        li behind = L_I(0);
+        if (cell[3] != VIT_NONE) {
+            global const vit_receiver_split *s = splits + cell[3];
+            behind = own & ~L_GT(lv3_dot(p, lv3_load(s->normal)), L_F(s->offset));
+            own &= ~behind;
+        }
+        for (int part = 0; part < 2; part++) {
+            if (l_any(own)) {
+                lv3 e = lv3_scale(lv3_load(light + (size_t)of[0] * 4), at.w0);
+                e = lv3_along(e, lv3_load(light + (size_t)of[1] * 4), at.w1);
+                e = lv3_along(e, lv3_load(light + (size_t)of[2] * 4), at.w2);
+                total = lv3_sel(own, e, total);
+            }
+            if (!l_any(behind))
+                break;
+            own = behind;
+            of = splits[cell[3]].receiver;
+            behind = L_I(0);
+        }
     }
-}
-
-static inline lf receiver_light(global const float *light, li a, li b, li c, const cell_place *at) {
-    return fma(at->w2, L_GATHER(lf, light, c), fma(at->w1, L_GATHER(lf, light, b), at->w0 * L_GATHER(lf, light, a)));
-}
-
-/* Irradiance of the lanes' samples, W/m2; 0 where the key is negative. at: their numbers. */
-static inline lv3 receiver_gather(RECEIVER_PARAMETERS, li key, const estimate_sample *sample, li at) {
-    global const float *light = VIT_EFFECT_RELIGHT ? relit : receivers;
-    li lanes = L_GE(key, L_I(0)), back;
-    if (!l_any(lanes))
-        return lv3_set(L_F(0), L_F(0), L_F(0));
-    lf b1, b2;
-    li triangle = lanes & L_AS_INT(l_gather_u(hit_triangle, at));
-    receiver_place(triangles, lanes, triangle, sample->p, sample->s, &b1, &b2, &back);
-    cell_place cell = cell_at(sides, lanes, triangle, back, b1, b2);
-    li first = cell.index * 4;
-    li a = L_AS_INT(l_gather_u(receiver_cells, first)), b = L_AS_INT(l_gather_u(receiver_cells, first + 1)),
-       c = L_AS_INT(l_gather_u(receiver_cells, first + 2)), split = L_AS_INT(l_gather_u(receiver_cells, first + 3));
-    li apart = lanes & L_NE(split, L_I((int)VIT_NONE));
-    if (l_any(apart)) { /* behind the plane: other receivers */
-        li record = (apart & split) * 8;
-        lf front = fma(
-            sample->p.z, L_GATHER(lf, receiver_splits + 2, record),
-            fma(sample->p.y, L_GATHER(lf, receiver_splits + 1, record), sample->p.x * L_GATHER(lf, receiver_splits, record)));
-        apart &= ~L_GT(front, L_GATHER(lf, receiver_splits + 3, record));
-        a = l_sel_i(apart, L_AS_INT(l_gather_u((global const uint *)receiver_splits + 4, record)), a);
-        b = l_sel_i(apart, L_AS_INT(l_gather_u((global const uint *)receiver_splits + 5, record)), b);
-        c = l_sel_i(apart, L_AS_INT(l_gather_u((global const uint *)receiver_splits + 6, record)), c);
-    }
-    a *= 4;
-    b *= 4;
-    c *= 4;
-    lv3 e = lv3_set(receiver_light(light, a, b, c, &cell), receiver_light(light + 1, a, b, c, &cell),
-                    receiver_light(light + 2, a, b, c, &cell));
-    return lv3_sel(lanes, e, lv3_set(L_F(0), L_F(0), L_F(0)));
+    return total;
 }

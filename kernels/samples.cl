@@ -28,7 +28,8 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
 
 /* Makes the packet's samples nothing: zeros. */
 static inline void samples_clear(global const vit_scene *scene, uint first, global float *position, global uint *normal,
-                                 global uint *albedo, global uint *accept, global float *inverse_area, global uint *specular) {
+                                 global uint *albedo, global uint *accept, global float *inverse_area, global uint *specular,
+                                 global float *indirect) {
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     sample_store_position(scene, zero, zero, L_I(0), position, first);
     L_STORE(L_U(0), normal + first);
@@ -41,6 +42,8 @@ static inline void samples_clear(global const vit_scene *scene, uint first, glob
         L_STORE(L_U(0), accept + first);
     if (VIT_EFFECT_AREA)
         L_STORE(L_F(0), inverse_area + first);
+    if (VIT_EFFECT_BASIS)
+        lv3_store_planes(zero, indirect, scene->samples, first);
 }
 
 /* Radiance of surfaces that needs no light source: emission and ambient light. */
@@ -56,7 +59,7 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
                     global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
                     global const uint *cells, global float *position, global uint *normal, global uint *albedo,
                     global float *direct, global uint *accept, global float *inverse_area, global uint *specular,
-                    volatile global uint *reached WORK_PARAMETERS) {
+                    RECEIVER_PARAMETERS, global float *indirect, volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -114,9 +117,13 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
+        if (VIT_EFFECT_BASIS)
+            lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_RELIGHT ? relit : receivers,
+                                             hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position),
+                             indirect, n, first);
     } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING))))
         /* Else all this stands there already. */
-        samples_clear(scene, first, position, normal, albedo, accept, inverse_area, specular);
+        samples_clear(scene, first, position, normal, albedo, accept, inverse_area, specular, indirect);
     else if (!VIT_EFFECT_SKY_IMAGE)
         return;
     /* Radiance that needs no light source: emission, ambient light and background. Direct light is added to it. */

@@ -16,8 +16,7 @@
 /* What the makers of indirect light read: of all of them (kernels/indirect.cl, INDIRECT_PARAMETERS). */
 #define ARGS_INDIRECT                                                                                                          \
     B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(albedo), B(position),       \
-        B(normal), B(accept), B(inverse_area), B(triangles), B(hit_triangle), B(sides), B(receiver_cells), B(receiver_splits), \
-        B(receivers), B(relit)
+        B(normal), B(accept), B(inverse_area)
 
 #define ARGS_ROUND B(cameras), V(frame), V(round), V(layers), B(active)
 
@@ -25,14 +24,17 @@
     X(find_edges, ON(ANTIALIAS), SECOND_COPY, PER_BLOCK, ONCE, W(edges), B(scene), B(shown), B(edges))                         \
     X(activate, ON_FILM, EACH, PER_BLOCK, ONCE, W(active) | W(split), B(scene), V(round), V(layers), B(edges), B(split),       \
       B(active))                                                                                                               \
+    X(relight, ON(RELIGHT), FIRST, PER_RELIT, ONCE, W(relit), B(scene), V(frame), B(lights), B(basis_groups), B(basis_words),  \
+      B(basis_coefficients), B(basis_frames), B(receivers), B(relit), ARGS_WORK)                                               \
     X(visibility, ALWAYS, EACH, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),   \
       B(hit_distance), ARGS_WORK)                                                                                              \
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \
       ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                                  \
     X(samples, ALWAYS, EACH, PER_SAMPLE, ONCE,                                                                                 \
-      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular), ARGS_SURFACE, ARGS_ROUND,   \
-      B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), B(albedo), B(direct),     \
-      B(accept), B(inverse_area), B(specular), B(reached), ARGS_WORK)                                                          \
+      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular) | W(indirect), ARGS_SURFACE, \
+      ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), B(albedo),    \
+      B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits), B(receivers), B(relit),       \
+      B(indirect), B(reached), ARGS_WORK)                                                                                      \
     X(direct_light, ON(LIGHTS), EACH, PER_BUNDLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle),          \
       B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
     X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),  \
@@ -64,9 +66,7 @@
     X(splat_buckets, ON(BUCKETS), EACH, GROUP_PER_LEVEL_NODE, LAST, W(buckets) | W(list_count) | W(counters), B(scene),        \
       V(max_nodes), V(level), V(chunks), B(photons), B(prefix), B(node_first), B(node_count), B(bounds), B(list_first),        \
       B(list_count), B(list), B(counters), B(buckets), ARGS_WORK)                                                              \
-    X(relight, ON(RELIGHT), FIRST, PER_RELIT, ONCE, W(relit), B(scene), V(frame), B(lights), B(basis_groups), B(basis_words),  \
-      B(basis_coefficients), B(basis_frames), B(receivers), B(relit), ARGS_WORK)                                               \
-    X(estimate_all, ON(INDIRECT) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), ARGS_INDIRECT, B(indirect), ARGS_WORK)       \
+    X(estimate_all, ON(PHOTONS) | ON_DENSE, EACH, PER_SAMPLE, ONCE, W(indirect), ARGS_INDIRECT, B(indirect), ARGS_WORK)        \
     X(estimate_sparse, ON(SPARSE), EACH, PER_COARSE, ONCE, W(coarse), ARGS_INDIRECT, B(coarse), ARGS_WORK)                     \
     X(interpolate, ON(SPARSE), EACH, PER_BLOCK, ONCE, W(indirect) | W(flags), B(scene), B(cameras), V(frame), B(keys),         \
       B(position), B(normal), B(albedo), B(accept), B(inverse_area), B(coarse), B(indirect), B(flags))                         \

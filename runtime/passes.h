@@ -162,7 +162,7 @@ typedef enum vit_rounds {
     AT_END,      /* the last only */
 } vit_rounds;
 
-#define VIT_MAX_ARGS 32
+#define VIT_MAX_ARGS 40
 
 typedef struct vit_pass {
     const char *name; /* also the kernel's */

@@ -14,8 +14,8 @@
     X(activate, z->activate *(z->samples / 16))                                                                                \
     X(chains, (4 + 4 + 4 + 4 + 40) * z->samples + HITS)                                                                        \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->specular) * z->samples +                             \
-                   z->cell * w[VIT_WORK_surface_points] + HITS)                                                                \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->specular + z->indirect) * z->samples +               \
+                   (z->cell + z->received) * w[VIT_WORK_surface_points] + HITS)                                                \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
     X(area_light, (LIT + sizeof(vit_light_sample) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                        \
     X(sky_light,                                                                                                               \
@@ -35,10 +35,8 @@
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
     X(relight, z->relit + 2 * w[VIT_WORK_evaluations])                                                                         \
-    X(estimate_all,                                                                                                            \
-      (4 + z->position + 4 + z->baked + 12 + z->received) * z->samples + z->evaluation * w[VIT_WORK_evaluations])              \
-    X(estimate_sparse,                                                                                                         \
-      (4 + z->position + 4 + z->baked + 36 + z->received) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])               \
+    X(estimate_all, (4 + z->position + 4 + z->baked + 12) * z->samples + z->evaluation * w[VIT_WORK_evaluations])              \
+    X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
     X(interpolate, (4 + z->position + 4 + z->lamps + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)            \
     X(estimate_rest, z->samples / 4 + z->evaluation * w[VIT_WORK_evaluations])                                                 \
     X(dots_clear, 4 * z->pixels)                                                                                               \
@@ -69,10 +67,10 @@ typedef struct sizes {
     uint64_t face;                 /* bytes per sample: of its triangle, for the normal; 0 without smooth normals */
     uint64_t end, view, specular;  /* bytes per sample: of a chain's end, of its direction, of the lobe */
     uint64_t area_samples, sky_samples;
-    uint64_t lamps;    /* bytes per sample: whether it is an area light */
-    uint64_t skylight; /* bytes per sample: of the sky's irradiance, and of what the lobe reflects of it */
-    uint64_t received; /* bytes per sample whose light is interpolated between receivers: triangle, side, cell, these */
-    uint64_t relit;    /* bytes: of all receivers, read and written, and of what is read of a frame's lights */
+    uint64_t lamps;              /* bytes per sample: whether it is an area light */
+    uint64_t skylight;           /* bytes per sample: of the sky's irradiance, and of what the lobe reflects of it */
+    uint64_t received, indirect; /* bytes: of side, cell and receivers that a hit looks up, per sample of the light written */
+    uint64_t relit;              /* bytes: of all receivers, read and written, and of what is read of a frame's lights */
     uint64_t zones, baked,
         cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
@@ -131,7 +129,8 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.skylight = z.specular ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
-    z.received = l->effects & ON(BASIS) ? 4 + sizeof(vit_triangle) + 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
+    z.indirect = l->effects & ON(BASIS) ? 12 : 0;
+    z.received = l->effects & ON(BASIS) ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
     z.corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX_BYTES(z.zones) / 8;
     z.relit = s->receivers * (sizeof(vit_receiver) + 16) + s->basis_lights * sizeof(vit_basis_frame) +

@@ -161,6 +161,8 @@ static uint64_t effects_of_indirect(const scene *s, const tracks *t, const plan 
     if (e == 0)
         return 0;
     e |= VIT_BIT(INDIRECT);
+    if (e & VIT_BIT(BASIS)) /* so cheap that every sample has its own */
+        return e;
     e |= s->quality.indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
     e |= s->quality.indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
     return e;

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_RECEIVERS 131072u
+#define MOST_RECEIVERS 196608u
 #define CELLS 65536u
 #define BOUNCE_RAYS 8000000u
 

@@ -15,13 +15,16 @@
 #define PULLED_IN 0.04f      /* of the way to the cell's middle: corners lie on edges, where others' surfaces begin */
 #define LIFT 0.04f           /* of the spacing: how far above the surface places look at each other */
 #define GROWTH 1.1f
+#define ROUNDS 4       /* of growth, at most */
 #define UNSEEN_PART 8u /* of the receivers wanted at most, for sides that no ray met */
 
 typedef struct placing {
     const receivers_input *in;
     receivers *out;
     float *spacing; /* a side, m; 0: it is dark, or no light stays on it */
-    bool *seen;     /* a side: by the cameras' rays */
+    bool *seen;     /* a side: by the cameras' rays, or beside one that they met */
+    bool *met;      /* a side: by the cameras' rays */
+    float *lift;    /* a side: how far above it places look at each other, m */
     float (*at)[2]; /* a seen side: where the nearest of them met it, barycentric weights */
     float unseen;   /* spacing of the others, m */
     uint32_t step;  /* pixels between the cameras' rays, each way */
@@ -132,9 +135,11 @@ static bool find_spacing(placing *p) {
     const uint32_t down = (in->height + p->step - 1) / p->step;
     p->spacing = malloc(((size_t)sides + 1u) * sizeof *p->spacing);
     p->seen = calloc((size_t)sides + 1u, sizeof *p->seen);
+    p->met = calloc((size_t)sides + 1u, sizeof *p->met);
+    p->lift = malloc(((size_t)sides + 1u) * sizeof *p->lift);
     p->at = malloc(((size_t)sides + 1u) * sizeof *p->at);
     l.hit = malloc(((size_t)l.across * down + 1u) * sizeof *l.hit);
-    if (!p->spacing || !p->seen || !p->at || !l.hit) {
+    if (!p->spacing || !p->seen || !p->at || !p->met || !p->lift || !l.hit) {
         free(l.hit);
         return false;
     }
@@ -156,7 +161,7 @@ static bool find_spacing(placing *p) {
                 p->at[h.side][0] = h.b1;
                 p->at[h.side][1] = h.b2;
             }
-            p->seen[h.side] = true;
+            p->seen[h.side] = p->met[h.side] = true;
         }
     }
     free(l.hit);
@@ -167,6 +172,7 @@ static bool find_spacing(placing *p) {
         p->out->lit_sides += takes;
         p->out->seen_sides += p->seen[i];
         p->spacing[i] = p->seen[i] ? p->spacing[i] : takes ? p->unseen : 0.0f;
+        p->lift[i] = float_max(p->spacing[i] * LIFT, 2.0f * in->rays->s->ray_offset);
     }
     return true;
 }
@@ -284,7 +290,7 @@ static uint32_t corner_receiver(placing *p, uint32_t side, float b1, float b2, f
         return p->found[at] = new_receiver(p, side, in1, in2);
     }
     const receiver *r = p->out->receivers + p->found[at];
-    if (r->side == side || !p->seen[side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, lift)))
+    if (r->side == side || !p->met[side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, lift)))
         return p->found[at];
     return new_receiver(p, side, in1, in2);
 }
@@ -299,7 +305,7 @@ typedef struct parting {
 } parting;
 
 static float lift_of(const placing *p, uint32_t side) {
-    return float_max(p->spacing[side] * LIFT, 2.0f * p->in->rays->s->ray_offset);
+    return p->lift[side];
 }
 
 static void find_parting(void *user, uint32_t item) {
@@ -308,7 +314,7 @@ static void find_parting(void *user, uint32_t item) {
     const uint32_t side = p->cells.side_of[item];
     const cell_corners k = cells_corners(&p->cells, item);
     s->found[item] = (separation){.places = (1u << SEPARATION_PLACES) - 1u};
-    s->is[item] = p->seen[side] && separation_find(p->in->rays, p->in->geometry, side, &k, lift_of(p, side), s->found + item);
+    s->is[item] = p->met[side] && separation_find(p->in->rays, p->in->geometry, side, &k, lift_of(p, side), s->found + item);
 }
 
 /* The place of those in `places` that is nearest to a corner; or the cell's middle. */
@@ -414,6 +420,8 @@ static void drop_dark(placing *p) {
 static vit_status failed(placing *p, receivers *out, vit_text *why) {
     free(p->spacing);
     free(p->seen);
+    free(p->met);
+    free(p->lift);
     free(p->at);
     free(p->keys);
     free(p->found);
@@ -428,7 +436,7 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
     placing p = {.in = in, .out = out};
     if (!find_spacing(&p))
         return failed(&p, out, why);
-    for (;;) {
+    for (int round = 0;; round++) {
         const vit_status status = cells_divide(in->geometry, in->rays->s->triangle_count, cell_edge, &p, &p.cells, why);
         if (status != VIT_OK) {
             failed(&p, out, NULL);
@@ -440,10 +448,10 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
         for (uint32_t i = 0; i < out->count; i++)
             unseen += !p.seen[out->receivers[i].side];
         const uint32_t seen_count = out->count - unseen;
-        if (seen_count <= in->most && unseen <= in->most / UNSEEN_PART)
+        if ((seen_count <= in->most && unseen <= in->most / UNSEEN_PART) || round == ROUNDS)
             break;
         const float more = float_max(sqrtf((float)seen_count / (float)in->most) * 1.05f, GROWTH);
-        p.unseen *= unseen > in->most / UNSEEN_PART ? 2.0f : 1.0f;
+        p.unseen *= unseen > in->most / UNSEEN_PART ? 4.0f : 1.0f;
         for (uint32_t i = 0; i < 2 * in->rays->s->triangle_count; i++)
             if (p.spacing[i] > 0.0f)
                 p.spacing[i] = !p.seen[i] ? p.unseen : seen_count > in->most ? p.spacing[i] * more : p.spacing[i];
@@ -462,6 +470,8 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
     p.cells.sides = NULL;
     free(p.spacing);
     free(p.seen);
+    free(p.met);
+    free(p.lift);
     free(p.at);
     free(p.keys);
     free(p.found);
