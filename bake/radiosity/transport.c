@@ -90,7 +90,7 @@ static bool compute(transport *t, float *irradiance) {
     if (fine) {
         albedos a = {t, albedo};
         parallel_for(t->in->threads, t->count, find_albedo, &a);
-        fine = reflect(t, radiosity, albedo);
+        fine = reflect(t, radiosity, albedo) && transport_aim(t, radiosity);
     }
     if (fine) {
         const passing p = {.t = t, .rows = &t->gathers, .from = radiosity, .to = irradiance};
@@ -110,12 +110,8 @@ static void drop(transport *t) {
     free(t->cell);
     free(t->place_count);
     free(t->places);
-    transport_rows *rows[2] = {&t->gathers, &t->bounces};
-    for (int i = 0; i < 2; i++) {
-        free(rows[i]->first);
-        free(rows[i]->to);
-        free(rows[i]->factor);
-    }
+    transport_drop_rows(&t->gathers);
+    transport_drop_rows(&t->bounces);
 }
 
 vit_status transport_find(const transport_input *in, float *irradiance, transport_report *report, vit_text *why) {

@@ -6,6 +6,7 @@
 
 #define LEAST_SAMPLES 4u      /* of each light that is found by chance, at each of a cell's places */
 #define MORE_LOOKS 24000000.0 /* at lights, shared out among the cells by how much each adds to the error */
+#define BLOCK 64u             /* cells that are alike in how light varies on them */
 #define MOST_SAMPLES 16384u   /* of a cell */
 #define LIFT 0.04f            /* in edges: as in transport_rows.c */
 
@@ -146,20 +147,39 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
         to[c] /= (float)count;
 }
 
-/* How many more samples each cell gets: in proportion to what its deviation does to the receivers. */
-static void share_out(lighting *l) {
+/* How many more samples each cell gets: half of them in proportion to what receivers get from it, half to what its deviation
+ * does to them. The deviation is that of the cells round about together: one that followed a cell's own first samples would
+ * leave those alone that have missed the light, and so lose light. False: out of memory. */
+static bool share_out(lighting *l) {
     const transport *t = l->t;
-    double looks = 0.0, all = 0.0;
+    const uint32_t blocks = t->cells.count / BLOCK + 1u;
+    double looks = 0.0, all[2] = {0.0, 0.0}, *variance = calloc(blocks, sizeof *variance);
+    uint32_t *count = calloc(blocks, sizeof *count);
     for (uint32_t s = 0; s < t->in->state_count; s++)
         looks += t->in->states[s].count;
-    for (size_t k = 0; k < t->gathers.first[t->gathers.count]; k++)
-        l->weight[t->gathers.to[k]] += t->gathers.factor[k];
-    for (uint32_t i = 0; i < t->count; i++)
-        all += (double)l->weight[i] * sqrt(l->variance[i] > 0.0 ? l->variance[i] : 0.0);
-    for (uint32_t i = 0; i < t->count && all > 0.0 && looks > 0.0; i++) {
-        const double part = (double)l->weight[i] * sqrt(l->variance[i] > 0.0 ? l->variance[i] : 0.0) / all * MORE_LOOKS / looks;
-        l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
+    if (variance && count && looks > 0.0) {
+        for (size_t k = 0; k < t->gathers.first[t->gathers.count]; k++)
+            l->weight[t->gathers.to[k]] += t->gathers.factor[k];
+        for (uint32_t i = 0; i < t->count; i++) {
+            variance[t->cell[i] / 2 / BLOCK] += l->variance[i];
+            count[t->cell[i] / 2 / BLOCK]++;
+        }
+        for (uint32_t b = 0; b < blocks; b++)
+            variance[b] = count[b] ? sqrt(variance[b] / count[b]) : 0.0;
+        for (uint32_t i = 0; i < t->count; i++) {
+            all[0] += (double)l->weight[i];
+            all[1] += (double)l->weight[i] * variance[t->cell[i] / 2 / BLOCK];
+        }
+        for (uint32_t i = 0; i < t->count && all[1] > 0.0; i++) {
+            const double w = (double)l->weight[i];
+            const double part = (w / all[0] + w * variance[t->cell[i] / 2 / BLOCK] / all[1]) * 0.5 * MORE_LOOKS / looks;
+            l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
+        }
     }
+    const bool fine = variance && count;
+    free(variance);
+    free(count);
+    return fine;
 }
 
 bool transport_direct(transport *t, float *radiosity) {
@@ -167,12 +187,12 @@ bool transport_direct(transport *t, float *radiosity) {
     l.weight = calloc(t->count + 1u, sizeof *l.weight);
     l.variance = malloc((t->count + 1u) * sizeof *l.variance);
     l.more = calloc(t->count + 1u, sizeof *l.more);
-    const bool fine = l.weight && l.variance && l.more;
+    bool fine = l.weight && l.variance && l.more;
     if (fine) {
         const parallel_work first = {.run = light_cell, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads},
                             second = {.run = light_more, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads};
         parallel_run(&first, &t->report->light_rays);
-        share_out(&l);
+        fine = share_out(&l);
         parallel_run(&second, &t->report->light_rays);
     }
     free(l.weight);

@@ -16,7 +16,7 @@ typedef struct transport_place {
 /* Rows of a sparse matrix. */
 typedef struct transport_rows {
     size_t *first; /* count + 1 */
-    uint32_t *to;  /* an entry: a cell; ascending in each row */
+    uint32_t *to;  /* an entry: a cell's number */
     float *factor;
     uint32_t count, row_room;
     size_t room;
@@ -43,6 +43,11 @@ typedef struct transport {
 /* transport_rows.c: cells, and who sees which. */
 bool transport_divide(transport *t, vit_text *why);
 bool transport_gather(transport *t);
+/* Room for so many rows and entries; the first call makes row 0's beginning. False: out of memory. */
+bool transport_make_room(transport_rows *r, uint32_t rows, size_t entries);
+void transport_drop_rows(transport_rows *r);
+/* transport_aim.c: replaces what receivers' rays met of far bright cells by rays aimed at them. */
+bool transport_aim(transport *t, const float *radiosity);
 /* transport_light.c: radiosity that direct light gives the numbered cells: count x columns. */
 bool transport_direct(transport *t, float *radiosity);
 /* Mean reflectance at a numbered cell's places, with that of lobes. */

@@ -201,7 +201,7 @@ static void shoot_row(void *user, uint32_t item) {
     qsort(hits, rays, sizeof *hits, by_part);
 }
 
-static bool make_room(transport_rows *r, uint32_t rows, size_t entries) {
+bool transport_make_room(transport_rows *r, uint32_t rows, size_t entries) {
     if (rows + 1u > r->row_room) {
         const uint32_t room = r->row_room ? 2 * r->row_room : rows + BATCH;
         size_t *first = realloc(r->first, room * sizeof *first);
@@ -267,7 +267,7 @@ static void offer(transport *t, uint32_t number, const transport_place *p) {
 
 /* Notes a row's hits, which are sorted. known: of cells that have numbers only, and their places stay. */
 static bool note_row(transport *t, transport_rows *rows, const found *hits, uint32_t rays, bool known) {
-    if (!rows->first || !make_room(rows, rows->count + 1u, rows->first[rows->count] + rays))
+    if (!rows->first || !transport_make_room(rows, rows->count + 1u, rows->first[rows->count] + rays))
         return false;
     size_t at = rows->first[rows->count];
     for (uint32_t i = 0; i < rays && hits[i].part != VIT_NONE;) {
@@ -336,8 +336,16 @@ static uint32_t *share_rays(const transport *t, uint32_t first) {
     return rays;
 }
 
+void transport_drop_rows(transport_rows *r) {
+    free(r->first);
+    free(r->to);
+    free(r->factor);
+    *r = (transport_rows){0};
+}
+
 bool transport_gather(transport *t) {
-    bool fine = make_room(&t->gathers, 0, 1) && make_room(&t->bounces, 0, 1) && shoot(t, NULL, 0, t->in->receiver_count, false);
+    bool fine = transport_make_room(&t->gathers, 0, 1) && transport_make_room(&t->bounces, 0, 1) &&
+                shoot(t, NULL, 0, t->in->receiver_count, false);
     uint32_t begin = 0;
     for (uint32_t g = 0; g < GENERATIONS && fine && t->in->reflections != 1u; g++) {
         const uint32_t end = t->count;
