@@ -41,8 +41,13 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                             .box_pad = c->box_pad,
                             .effects = c->effects};
     photon_rays rays;
-    vit_status status = still && moving ? VIT_OK : out_of_memory(why);
-    if (status == VIT_OK && !photon_rays_open(&s, p->threads, &rays))
+    if (!still || !moving) {
+        free(still);
+        free(moving);
+        return out_of_memory(why);
+    }
+    vit_status status = VIT_OK;
+    if (!photon_rays_open(&s, p->threads, &rays))
         status = bake_fail(why, VIT_FAILED, "Embree fails");
     if (status == VIT_OK) {
         baked_input in = {.rays = &rays,

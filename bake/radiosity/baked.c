@@ -30,8 +30,11 @@ static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
     s->knots = calloc(in->moving_count + 1u, sizeof *s->knots);
     s->first = calloc(in->moving_count + 1u, sizeof *s->first);
     s->counts = calloc(in->moving_count + 1u, sizeof *s->counts);
-    vit_status status =
-        s->knots && s->first && s->counts ? VIT_OK : bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    vit_status status = VIT_OK;
+    if (!s->knots || !s->first || !s->counts) {
+        bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+        return VIT_FAILED;
+    }
     s->count = 1;
     for (uint32_t i = 0; i < in->moving_count && status == VIT_OK; i++) {
         status = basis_knots_find(in->tracks, in->frames, in->moving[i], in->size, &s->knots[i], why);
@@ -43,8 +46,10 @@ static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
         return status;
     s->state = calloc(s->count, sizeof *s->state);
     s->light = calloc(s->count, sizeof *s->light);
-    if (!s->state || !s->light)
-        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    if (!s->state || !s->light) {
+        bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+        return VIT_FAILED;
+    }
     s->state[0] = (transport_state){in->still, in->still_count};
     for (uint32_t i = 0, n = 1; i < in->moving_count; i++)
         for (uint32_t k = 0; k < s->knots[i].count; k++, n++) {
@@ -63,8 +68,10 @@ static vit_status keep(const baked_input *in, const states *s, const float *irra
     out->still = calloc(padded, sizeof *out->still);
     out->frames = malloc(((size_t)in->frames * in->moving_count + 1u) * sizeof *out->frames);
     out->lights = in->moving_count;
-    if (!out->still || !out->frames)
-        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    if (!out->still || !out->frames) {
+        bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+        return VIT_FAILED;
+    }
     for (uint32_t r = 0; r < count; r++)
         memcpy(out->still[r].irradiance, irradiance + (size_t)r * columns, sizeof out->still[r].irradiance);
     for (uint32_t f = 0; f < in->frames; f++)

@@ -417,57 +417,57 @@ static void drop_dark(placing *p) {
     }
 }
 
-static vit_status failed(placing *p, receivers *out, vit_text *why) {
-    free(p->spacing);
-    free(p->seen);
-    free(p->met);
-    free(p->lift);
-    free(p->at);
+/* For another round with another spacing. */
+static void start_anew(placing *p) {
+    const uint32_t lit = p->out->lit_sides, seen = p->out->seen_sides;
     free(p->keys);
     free(p->found);
+    p->keys = NULL;
+    p->found = NULL;
+    p->slots = p->room = p->split_room = 0;
     cells_free(&p->cells);
-    receivers_free(out);
-    return bake_fail(why, VIT_FAILED, "receivers: out of memory");
+    receivers_free(p->out);
+    p->out->lit_sides = lit;
+    p->out->seen_sides = seen;
 }
 
-/* 4. As many as are wanted: the spacing grows until they are. */
+/* 4. As many as are wanted: the spacing grows until they are, or has grown often enough. */
+static vit_status place_all(placing *p, vit_text *why) {
+    const receivers_input *in = p->in;
+    for (int round = 0;; round++) {
+        const vit_status status = cells_divide(in->geometry, in->rays->s->triangle_count, cell_edge, p, &p->cells, why);
+        if (status != VIT_OK)
+            return status;
+        if (!take_cells(p))
+            return bake_fail(why, VIT_FAILED, "receivers: out of memory");
+        uint32_t unseen = 0;
+        for (uint32_t i = 0; i < p->out->count; i++)
+            unseen += !p->seen[p->out->receivers[i].side];
+        const uint32_t seen = p->out->count - unseen;
+        const bool fewer_seen = seen > in->most, fewer_unseen = unseen > in->most / UNSEEN_PART;
+        if (!(fewer_seen || fewer_unseen) || round == ROUNDS)
+            return VIT_OK;
+        const float more = fewer_seen ? float_max(sqrtf((float)seen / (float)in->most) * 1.05f, GROWTH) : 1.0f;
+        p->unseen *= fewer_unseen ? 4.0f : 1.0f;
+        for (uint32_t i = 0; i < 2 * in->rays->s->triangle_count; i++)
+            if (p->spacing[i] > 0.0f)
+                p->spacing[i] = p->seen[i] ? p->spacing[i] * more : p->unseen;
+        start_anew(p);
+    }
+}
+
 vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *why) {
     *out = (receivers){0};
     placing p = {.in = in, .out = out};
-    if (!find_spacing(&p))
-        return failed(&p, out, why);
-    for (int round = 0;; round++) {
-        const vit_status status = cells_divide(in->geometry, in->rays->s->triangle_count, cell_edge, &p, &p.cells, why);
-        if (status != VIT_OK) {
-            failed(&p, out, NULL);
-            return status;
-        }
-        if (!take_cells(&p))
-            return failed(&p, out, why);
-        uint32_t unseen = 0;
-        for (uint32_t i = 0; i < out->count; i++)
-            unseen += !p.seen[out->receivers[i].side];
-        const uint32_t seen_count = out->count - unseen;
-        if ((seen_count <= in->most && unseen <= in->most / UNSEEN_PART) || round == ROUNDS)
-            break;
-        const float more = float_max(sqrtf((float)seen_count / (float)in->most) * 1.05f, GROWTH);
-        p.unseen *= unseen > in->most / UNSEEN_PART ? 4.0f : 1.0f;
-        for (uint32_t i = 0; i < 2 * in->rays->s->triangle_count; i++)
-            if (p.spacing[i] > 0.0f)
-                p.spacing[i] = !p.seen[i] ? p.unseen : seen_count > in->most ? p.spacing[i] * more : p.spacing[i];
-        const uint32_t lit = out->lit_sides, seen = out->seen_sides;
-        free(p.keys);
-        free(p.found);
-        cells_free(&p.cells);
-        receivers_free(out);
-        out->lit_sides = lit;
-        out->seen_sides = seen;
-        p.keys = NULL;
-        p.found = NULL;
-        p.slots = p.room = p.split_room = 0;
+    vit_status status = VIT_FAILED;
+    if (find_spacing(&p))
+        status = place_all(&p, why);
+    else
+        bake_fail(why, VIT_FAILED, "receivers: out of memory");
+    if (status == VIT_OK) {
+        drop_dark(&p);
+        p.cells.sides = NULL;
     }
-    drop_dark(&p);
-    p.cells.sides = NULL;
     free(p.spacing);
     free(p.seen);
     free(p.met);
@@ -476,7 +476,9 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
     free(p.keys);
     free(p.found);
     cells_free(&p.cells);
-    return VIT_OK;
+    if (status != VIT_OK)
+        receivers_free(out);
+    return status;
 }
 
 void receivers_free(receivers *r) {

@@ -43,11 +43,14 @@ static double sum_of(const transport *t, const float *light) {
 static bool reflect(transport *t, float *all, const float *albedo) {
     const size_t numbers = (size_t)t->count * t->columns;
     float *one = malloc((numbers + 1u) * sizeof *one), *other = malloc((numbers + 1u) * sizeof *other);
-    const bool fine = one && other;
+    if (!one || !other) {
+        free(one);
+        free(other);
+        return false;
+    }
     const uint32_t most = t->in->reflections == TRANSPORT_CONVERGED ? MOST_REFLECTIONS : t->in->reflections - 1u;
-    double before = fine ? sum_of(t, all) : 0.0, whole = before;
-    if (fine)
-        memcpy(one, all, numbers * sizeof *one);
+    double before = sum_of(t, all), whole = before;
+    memcpy(one, all, numbers * sizeof *one);
     for (uint32_t h = 0; h < most && before > 0.0; h++) {
         const passing p = {.t = t, .rows = &t->bounces, .from = one, .albedo = albedo, .to = other};
         parallel_for(t->in->threads, t->count, pass_row, (void *)(uintptr_t)&p);
@@ -69,7 +72,7 @@ static bool reflect(transport *t, float *all, const float *albedo) {
     }
     free(one);
     free(other);
-    return fine;
+    return true;
 }
 
 typedef struct albedos {

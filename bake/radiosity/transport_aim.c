@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BRIGHT 3.0      /* times what a receiver sees on average */
-#define FAR_AWAY 8.0f   /* squared distance over a cell's area */
+#define BRIGHT 3.0    /* times what a receiver sees on average */
+#define FAR_AWAY 8.0f /* squared distance over a cell's area */
 #define LEAST_COSINE 0.1f
-#define AIMED_RAYS 4u   /* a receiver has a ray aimed for so many that are not */
+#define AIMED_RAYS 4u /* a receiver has a ray aimed for so many that are not */
 #define BATCH 4096u
 
 typedef struct aiming {
@@ -39,7 +39,8 @@ static bool is_aimed(const aiming *a, vec3 from, vec3 normal, uint32_t number) {
                 there = float_max(-vec3_dot(face, d), LEAST_COSINE);
     if (!(d2 > FAR_AWAY * area))
         return false;
-    const double by_chance = (double)t->in->receiver_rays * (double)here * (double)there * (double)area / (3.14159265358979 * (double)d2);
+    const double by_chance =
+        (double)t->in->receiver_rays * (double)here * (double)there * (double)area / (3.14159265358979 * (double)d2);
     return a->rays * (double)area * (double)a->bright[number] > by_chance * a->sum[a->count - 1];
 }
 
@@ -70,7 +71,8 @@ static bool place_on(const transport *t, uint32_t number, float x, float y, vec3
 static float aimed(const aiming *a, const receiver *r, vec3 from, vec3 normal, uint32_t number, vec3 to) {
     const transport *t = a->t;
     const float offset = t->in->rays->s->ray_offset;
-    const vec3 face = side_face(t->in->geometry, t->cells.side_of[t->cell[number] / 2]), way = vec3_sub(to, from), d = vec3_unit(way);
+    const vec3 face = side_face(t->in->geometry, t->cells.side_of[t->cell[number] / 2]), way = vec3_sub(to, from),
+               d = vec3_unit(way);
     const float here = vec3_dot(normal, d), there = -vec3_dot(face, d), d2 = vec3_dot(way, way);
     const vec3 own = side_face(t->in->geometry, r->side);
     if (!(here > 0.0f) || !(there > 0.0f) || !(vec3_dot(own, d) > 0.0f) || !(d2 > 0.0f) ||
@@ -85,7 +87,8 @@ static void aim_row(void *user, uint32_t item) {
     const transport *t = a->t;
     const uint32_t row = a->first + item, seed = pcg(row ^ 0x7feb352du);
     const receiver *r = t->in->receivers + row;
-    const vec3 from = side_place(t->in->geometry, r->side, r->b1, r->b2), normal = side_shading(t->in->geometry, r->side, r->b1, r->b2);
+    const vec3 from = side_place(t->in->geometry, r->side, r->b1, r->b2),
+               normal = side_shading(t->in->geometry, r->side, r->b1, r->b2);
     uint32_t *to = a->to + (size_t)item * a->room, n = 0;
     float *factor = a->factor + (size_t)item * a->room;
     for (size_t k = t->gathers.first[row]; k < t->gathers.first[row + 1]; k++) {
@@ -98,7 +101,8 @@ static void aim_row(void *user, uint32_t item) {
         vec3 at;
         const double u = ((double)i + (double)unit_float(pcg(seed + 3u * i))) / a->rays * a->sum[a->count - 1];
         const uint32_t number = a->aim[chosen(a, u)];
-        if (!is_aimed(a, from, normal, number) || !place_on(t, number, unit_float(pcg(seed + 3u * i + 1u)), unit_float(pcg(seed + 3u * i + 2u)), &at))
+        if (!is_aimed(a, from, normal, number) ||
+            !place_on(t, number, unit_float(pcg(seed + 3u * i + 1u)), unit_float(pcg(seed + 3u * i + 2u)), &at))
             continue;
         const float f = aimed(a, r, from, normal, number, at);
         if (f > 0.0f) {
