@@ -20,7 +20,7 @@
 /* The choice is looked for on the device that compiles nothing. */
 #define MEASURE SWEEP "--device host "
 
-enum { ROWS = 32, COLUMNS = 48, CELL = 512 };
+enum { ROWS = 32, COLUMNS = 48, CELL = 1024 };
 
 typedef struct table {
     int rows, columns;

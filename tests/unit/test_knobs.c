@@ -51,7 +51,7 @@ static const knob_setting *find(const knob_list *l, const char *name) {
 }
 
 static void the_default_comes_first_and_each_knob_alone_changes_its_own(void **state) {
-    knob_list l = make(&base, 0.8, NULL, 64);
+    knob_list l = make(&base, 0.8, NULL, 128);
     (void)state;
     assert_string_equal(l.settings[0].name, "default");
     assert_string_equal(text_of(&l.settings[0].quality), text_of(&base));

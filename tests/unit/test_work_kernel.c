@@ -10,7 +10,7 @@
 
 /* The program as the preprocessor leaves it, all effects on; free() it. */
 static char *preprocessed(unsigned lanes, int counting) {
-    char command[1024];
+    char command[4096];
     int n = snprintf(command, sizeof command,
                      VIT_CC " -E -P -x c " KERNELS " -D__OPENCL_VERSION__=120 -DVIT_LANES=%u -DVIT_VIEW=0 -DVIT_FORMAT=0 "
                             "-DVIT_COUNT_WORK=%d",
