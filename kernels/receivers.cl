@@ -29,7 +29,7 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
         global const vit_basis_coefficient *c = coefficients + g->first_coefficient + at->knot * rank;
         global const vit_basis_coefficient *next = weight > 0 ? c + rank : c;
         global const uint *vector = words + g->first_word + slot;
-        WORK_ADD(evaluations, (ulong)rank * VIT_LANES);
+        WORK_ADD(evaluations, (ulong)rank * (2 * VIT_LANES));
         for (uint k = 0; k < rank; k++) {
             li word = L_AS_INT(L_LOAD(vector + k * RELIGHT_HALF));
             lf a = L_FROM_INT((word << 16) >> 16), b = L_FROM_INT(word >> 16);

@@ -4,7 +4,8 @@
 /* Formulas of bytes, a row a pass: X(pass, bytes). The model, which knows no caches, lanes, groups or chunks:
  *  - planes of samples, masks and records that a pass walks over count whole, padding and empty slots included;
  *  - records that are looked up count once a lookup: triangle, attributes and material at a hit, four texels a texture lookup,
- *    index and 28 bytes of a photon a test against a node, index and photon (or bucket) an evaluation;
+ *    index and 28 bytes of a photon a test against a node, index and photon (or bucket) an evaluation, side, cell and its
+ *    receivers a hit; a vector's number, of two bytes, a receiver;
  *  - a sample looks for near area lights among the points of all sets (kernels/direct.cl, lit_near);
  *  - traversal of the BVH counts nothing: its order is the packets' own. Nor do counters, the bits that samples set, the chunks
  *    of the root's list, the pixels of dots.

@@ -136,6 +136,13 @@ static const struct {
     {"sequence", TEST_PACKS "/room.cfg", "--zones 0 --effective-area 0 --bounce-sequence 1 --indirect-samples 1"},
 #undef BAKED
     {"still", TEST_PACKS "/still.cfg", PLAIN},
+#define BASIS "--indirect basis --receiver-rays 64 --receiver-spacing 24 "
+    {"basis", TEST_PACKS "/room.cfg", PLAIN BASIS "--all-formats"},
+    {"basis-still", TEST_PACKS "/still.cfg", PLAIN BASIS},
+    {"basis-16", TEST_PACKS "/room.cfg", PLAIN BASIS "--indirect-samples 16 --tile 8"},
+    {"basis-33x47", TEST_SCENES "/cornell.cfg", PLAIN BASIS "--size 33x47 --frames 3 --sample-bits 16"},
+    {"basis-shine", TEST_PACKS "/shine.cfg", BASIS "--all-formats"},
+#undef BASIS
 #undef PLAIN
     {"shine", TEST_PACKS "/shine.cfg", "--all-formats"},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},

@@ -211,6 +211,46 @@ static void still_lights_have_no_pass_that_traces_photons(void **state) {
     only_adds("room", "still", " ", " photon_paths ");
 }
 
+#define OF_RECEIVERS " sides receiver_cells receivers "
+#define OF_RELIGHT " basis_groups basis_words basis_coefficients basis_frames relit "
+
+/* Nothing of photons is left, and what both have is the same. */
+static void baked_irradiance_takes_the_photons_place(void **state) {
+    (void)state;
+    const vit_requirements basis = requirements("basis"), photons = requirements("room");
+    adds("basis", "room", OF_RECEIVERS OF_RELIGHT, " relight ");
+    for (uint32_t i = 0; i < photons.buffer_count; i++) {
+        const uint64_t there = bytes_of(&basis, photons.buffers[i].name);
+        assert_int_equal(there == 0, is_among(" photons traced-photons list ", photons.buffers[i].effect));
+        assert_true(there == 0 || there == photons.buffers[i].bytes);
+    }
+    for (uint32_t i = 0; i < photons.pass_count; i++)
+        assert_int_equal(has_pass(&basis, photons.passes[i]),
+                         is_among(" visibility samples direct_light resolve ", photons.passes[i]));
+    assert_int_equal(basis.effects & vit_effects_upon(VIT_BIT(PHOTONS)), 0);
+    assert_int_equal(bytes_of(&basis, "relit"), bytes_of(&basis, "receivers"));
+    only_adds("basis-16", "basis", " ", " "); /* every sample has its own light */
+    assert_int_equal(requirements("basis-16").effects & vit_effects_upon(VIT_BIT(SPARSE)), 0);
+}
+
+static void still_lights_need_no_basis_and_no_relight(void **state) {
+    (void)state;
+    only_adds("basis", "basis-still", OF_RELIGHT, " relight ");
+    assert_int_equal(requirements("basis-still").effects & VIT_BIT(RELIGHT), 0);
+}
+
+static void photons_have_nothing_of_baked_irradiance(void **state) {
+    (void)state;
+    static const char *const packs[] = {"list", "room", "zones", "sparse-buckets", "still", "dark", "lamp", "shine"};
+    for (size_t k = 0; k < sizeof packs / sizeof packs[0]; k++) {
+        const vit_requirements need = requirements(packs[k]);
+        assert_int_equal(need.effects & vit_effects_upon(VIT_BIT(BASIS)), 0);
+        assert_false(has_pass(&need, "relight"));
+        for (uint32_t i = 0; i < need.buffer_count; i++)
+            assert_false(is_among(" basis relight ", need.buffers[i].effect));
+    }
+}
+
 static void a_scene_without_lights_has_neither_lights_nor_photons(void **state) {
     (void)state;
     const vit_requirements need = requirements("lamp");
@@ -280,9 +320,9 @@ static void open_and_play_one(const char *name, vit_view view) {
 
 static void what_is_made_and_compiled_is_what_was_required_and_no_more(void **state) {
     (void)state;
-    static const char *const packs[] = {"list",  "buckets",      "raw",    "dark",        "room",
-                                        "still", "lamp",         "sparse", "sparse-room", "sparse-buckets",
-                                        "small", "small-sparse", "shine"};
+    static const char *const packs[] = {"list",  "buckets", "raw",         "dark",           "room",       "still",
+                                        "lamp",  "sparse",  "sparse-room", "sparse-buckets", "small",      "small-sparse",
+                                        "shine", "basis",   "basis-still", "basis-16",       "basis-shine"};
     for (size_t i = 0; i < sizeof packs / sizeof packs[0]; i++)
         open_and_play_one(packs[i], VIT_VIEW_final);
 }
@@ -305,6 +345,9 @@ int main(void) {
         cmocka_unit_test(small_samples_halve_the_positions_and_nothing_else),
         cmocka_unit_test(zones_and_areas_add_their_cells_and_a_word_a_sample_each),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
+        cmocka_unit_test(baked_irradiance_takes_the_photons_place),
+        cmocka_unit_test(still_lights_need_no_basis_and_no_relight),
+        cmocka_unit_test(photons_have_nothing_of_baked_irradiance),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),
         cmocka_unit_test(what_is_made_and_compiled_is_what_was_required_and_no_more),

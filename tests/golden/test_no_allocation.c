@@ -217,6 +217,7 @@ static void nothing_is_allocated_opened_or_printed_from_open_to_close(void **sta
     assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){0}), 0);
     assert_int_equal(calls_of_a_whole_life("room-buckets", (vit_open_info){0}), 0);
     assert_int_equal(calls_of_a_whole_life("dark", (vit_open_info){0}), 0);
+    assert_int_equal(calls_of_a_whole_life("basis", (vit_open_info){0}), 0);
 }
 
 static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {
@@ -224,6 +225,7 @@ static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {
     assert_int_equal(calls_of_a_whole_life("room", (vit_open_info){.device = VIT_DEVICE_HOST, .threads = 3}), 0);
     assert_int_equal(
         calls_of_a_whole_life("room-buckets", (vit_open_info){.device = VIT_DEVICE_HOST, .profile = 1, .count_work = 1}), 0);
+    assert_int_equal(calls_of_a_whole_life("basis-shine", (vit_open_info){.device = VIT_DEVICE_HOST, .count_work = 1}), 0);
 }
 
 static void nothing_is_allocated_when_the_caller_lends_the_framebuffer(void **state) {

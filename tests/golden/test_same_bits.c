@@ -126,6 +126,8 @@ static void the_device_host_gives_the_bits_of_opencl(void **state) {
     assert_all_alike(test_pack("list"), "--verify --hash", on_host, COUNT(on_host));
     assert_all_alike(test_pack("room"), "--trace", on_host, COUNT(on_host));
     assert_all_alike(test_pack("zones-sparse-buckets"), "--trace", on_host, COUNT(on_host));
+    assert_all_alike(test_pack("basis-33x47"), "--trace", on_host, COUNT(on_host));
+    assert_all_alike(test_pack("basis-shine"), "--trace", on_host, COUNT(on_host));
 }
 
 static void make_caches(void) {
@@ -161,6 +163,11 @@ ALIKE(zones_in_buckets_hash_the_same, "zones-buckets", together)
 ALIKE(zones_at_few_samples_hash_the_same, "zones-sparse", fewest)
 ALIKE(zones_in_buckets_at_few_samples_hash_the_same, "zones-sparse-buckets", few)
 ALIKE(areas_alone_hash_the_same, "areas-alone", fewest)
+ALIKE(baked_irradiance_of_a_light_that_moves_hashes_the_same, "basis", together)
+ALIKE(baked_irradiance_of_still_light_hashes_the_same, "basis-still", fewest)
+ALIKE(baked_irradiance_in_small_tiles_hashes_the_same, "basis-16", fewest)
+ALIKE(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same, "basis-33x47", few)
+ALIKE(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "basis-shine", together)
 ALIKE(frames_without_photons_hash_the_same, "dark", fewest)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
@@ -203,6 +210,7 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("zones-buckets"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("shine"), "--trace", few, COUNT(few));
+    assert_all_alike(test_pack("basis"), "--trace", few, COUNT(few));
 }
 
 /* Every format at every width by the device host; OpenCL's compiler makes each pair anew, so that there each width has one
@@ -264,6 +272,11 @@ int main(void) {
         cmocka_unit_test(zones_at_few_samples_hash_the_same),
         cmocka_unit_test(zones_in_buckets_at_few_samples_hash_the_same),
         cmocka_unit_test(areas_alone_hash_the_same),
+        cmocka_unit_test(baked_irradiance_of_a_light_that_moves_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_of_still_light_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_in_small_tiles_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same),
         cmocka_unit_test(frames_without_photons_hash_the_same),
         cmocka_unit_test(baked_and_traced_photons_textures_holes_and_emission_hash_the_same),
         cmocka_unit_test(a_mesh_without_a_scene_file_hashes_the_same),

@@ -4,50 +4,13 @@
  * out again on the host from the frame's own buffers (hits, keys, lists, nodes) and must match to the unit; what cannot must
  * hold bounds; and every kind that says `same` must not move with lanes or groups, which catches counting packets instead of
  * lanes. Threads and devices are settings of a process: tests/golden/test_budget.c holds files of counts to each other. */
-#include "read_buffer.h"
+#include "counted_work.h"
 #include <math.h>
 
-static uint64_t work(const vit_statistics *s, const char *pass, uint32_t kind) {
-    for (uint32_t i = 0; i < s->pass_count; i++)
-        if (strcmp(s->pass_names[i], pass) == 0)
-            return s->pass_work[i][kind];
-    return 0;
-}
-#define WORK(s, pass, kind) work(s, #pass, VIT_WORK_##kind)
-
-static uint64_t total(const vit_statistics *s, uint32_t kind) {
-    uint64_t sum = 0;
-    for (uint32_t i = 0; i < s->pass_count; i++)
-        sum += s->pass_work[i][kind];
-    return sum;
-}
-
-static const char *const packs[] = {"list",  "buckets", "room",   "room-buckets",   "raw",   "normal-keys",  "33x47",
-                                    "still", "dark",    "sparse", "sparse-buckets", "zones", "zones-buckets"};
+static const char *const packs[] = {"list",           "buckets", "room",          "room-buckets", "raw",
+                                    "normal-keys",    "33x47",   "still",         "dark",         "sparse",
+                                    "sparse-buckets", "zones",   "zones-buckets", "basis",        "basis-33x47"};
 enum { PACKS = sizeof packs / sizeof packs[0] };
-
-/* Every pass and kind; those that depend on the lanes only if asked. */
-static void assert_equal_work(const vit_statistics *a, const vit_statistics *b, int all, const char *what) {
-    assert_int_equal(a->pass_count, b->pass_count);
-    assert_int_equal(a->work_count, VIT_WORK_COUNT);
-    assert_int_equal(b->work_count, VIT_WORK_COUNT);
-    for (uint32_t p = 0; p < a->pass_count; p++)
-        for (uint32_t k = 0; k < a->work_count; k++)
-            if ((all || a->work_same[k]) && a->pass_work[p][k] != b->pass_work[p][k])
-                fail_msg("%s: %s of %s: %llu and %llu", what, a->work_names[k], a->pass_names[p],
-                         (unsigned long long)a->pass_work[p][k], (unsigned long long)b->pass_work[p][k]);
-}
-
-/* Counts of frame 1, or of the only one, and its hash. */
-static vit_statistics count(const char *pack, uint32_t device, uint32_t lanes, uint32_t group, uint64_t *hash) {
-    open_pack p;
-    pack_open(&p, pack, (vit_open_info){.device = device, .lanes = lanes, .group = group, .count_work = 1});
-    (void)pack_frame_hash(&p, 0);
-    *hash = pack_frame_hash(&p, p.need.frames > 1 ? 1 : 0);
-    vit_statistics s = pack_stats(&p);
-    pack_close(&p);
-    return s;
-}
 
 /* Most of the time is PoCL's compiler, which makes each width and group size anew: not every pack in all ways, and the device
  * host for widths where it stands for them. */
@@ -85,59 +48,27 @@ static uint32_t device_for(const char *pack) {
     return strcmp(pack, packs[0]) == 0 || strcmp(pack, packs[1]) == 0 ? 0 : VIT_DEVICE_HOST;
 }
 
+static counted *count_and_read(const char *pack, vit_open_info how) {
+    how.device = device_for(pack);
+    return count_frame(pack, how);
+}
+
 static void counting_changes_no_bit(void **state) {
     (void)state;
     for (size_t i = 0; i < PACKS; i++) {
         open_pack p;
         uint64_t hash;
-        const vit_statistics counted = count(packs[i], device_for(packs[i]), 0, 0, &hash);
+        const vit_statistics whole = count(packs[i], device_for(packs[i]), 0, 0, &hash);
         pack_open(&p, packs[i], (vit_open_info){.device = device_for(packs[i])});
         const uint64_t plain = pack_frame_hash(&p, p.need.frames > 1 ? 1 : 0);
         const vit_statistics s = pack_stats(&p);
         assert_true(hash == plain);
         assert_int_equal(s.work_count, 0);
-        assert_int_equal(s.pass_count, counted.pass_count);
-        assert_int_equal(s.pairs, counted.pairs);
+        assert_int_equal(s.pass_count, whole.pass_count);
+        assert_int_equal(s.pairs, whole.pairs);
         assert_int_equal(pack_buffer_bytes(&p, "work"), 0);
         pack_close(&p);
     }
-}
-
-/* A frame that was counted, and what its passes left on the device. */
-typedef struct counted {
-    open_pack p;
-    vit_statistics s;
-    const vit_scene *scene;
-    uint32_t *hits, *keys, *masks, *prefix, *first, *children, *list;
-} counted;
-
-static counted *count_and_read(const char *pack, vit_open_info how) {
-    counted *c = calloc(1, sizeof *c);
-    assert_non_null(c);
-    how.count_work = 1;
-    how.device = device_for(pack);
-    pack_open(&c->p, pack, how);
-    pack_frame(&c->p, 1);
-    c->s = pack_stats(&c->p);
-    c->scene = c->p.v->pack.scene;
-    c->hits = read_buffer(&c->p, B_hit_triangle);
-    if (c->scene->effects & VIT_BIT(PHOTONS)) {
-        c->keys = read_buffer(&c->p, B_keys);
-        c->masks = read_buffer(&c->p, B_masks);
-        c->prefix = read_buffer(&c->p, B_prefix);
-        c->first = read_buffer(&c->p, B_node_first);
-        c->children = read_buffer(&c->p, B_node_count);
-        c->list = read_buffer(&c->p, B_list_count);
-    }
-    return c;
-}
-
-static void drop(counted *c) {
-    void *const all[] = {c->hits, c->keys, c->masks, c->prefix, c->first, c->children, c->list};
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        free(all[i]);
-    pack_close(&c->p);
-    free(c);
 }
 
 /* Node of a key's cluster: the bits before it in its word of the last level's masks, after the word's first child. */
@@ -362,9 +293,9 @@ static void work_that_depends_on_the_lanes_says_so_and_is_bounded(void **state) 
 /* The table of formulas has a row for every pass: no pass moves nothing. */
 static void every_pass_of_every_pack_moves_bytes(void **state) {
     (void)state;
-    static const char *const all_passes[] = {"list", "buckets"};
+    static const char *const all_passes[] = {"list", "buckets", "basis"};
     static const vit_view views[] = {VIT_VIEW_final, VIT_VIEW_photons};
-    for (size_t i = 0; i < 2; i++)
+    for (size_t i = 0; i < sizeof all_passes / sizeof all_passes[0]; i++)
         for (size_t k = 0; k < 2; k++) {
             counted *c = count_and_read(all_passes[i], (vit_open_info){.view = views[k]});
             for (uint32_t p = 0; p < c->s.pass_count; p++)

@@ -130,8 +130,8 @@
     X(META, photons_without_indirect_light, "PHOTONS without INDIRECT", EFFECTS(0, BIT(INDIRECT)))                             \
     X(META, indirect_light_without_a_maker, "INDIRECT without what makes", EFFECTS(0, vit_effects_upon(BIT(PHOTONS))),         \
       im->scene->paths = im->scene->baked = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                            \
-    X(META, sparse_samples_without_indirect_light, "SPARSE without INDIRECT",                                                  \
-      EFFECTS(BIT(SPARSE), vit_effects_upon(BIT(INDIRECT)) & ~BIT(SPARSE)))                                                    \
+    X(META, sparse_samples_without_photons, "SPARSE without PHOTONS",                                                          \
+      EFFECTS(BIT(SPARSE), vit_effects_upon(BIT(PHOTONS)) & ~BIT(SPARSE)))                                                     \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
     X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \

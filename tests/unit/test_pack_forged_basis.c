@@ -17,6 +17,7 @@
     X(META, huge_basis_coefficients, "basis_coefficients", im->scene->basis_coefficients = 0xffffffff)                         \
     X(META, photons_beside_the_basis, "PHOTONS and BASIS exclude", EFFECTS(BIT(PHOTONS) | BIT(LIST), 0))                       \
     X(META, basis_without_indirect_light, "BASIS without INDIRECT", EFFECTS(0, BIT(INDIRECT)))                                 \
+    X(META, sparse_samples_of_a_basis, "SPARSE without PHOTONS", EFFECTS(BIT(SPARSE), 0))                                      \
     X(META, relight_without_basis, "RELIGHT without BASIS", EFFECTS(0, BIT(BASIS)))                                            \
     X(META, relight_without_lights, "RELIGHT without LIGHTS", EFFECTS(0, BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE)))                \
     X(META, indirect_light_without_a_maker, "INDIRECT without what makes", EFFECTS(0, BIT(BASIS) | BIT(RELIGHT)))              \
