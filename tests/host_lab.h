@@ -57,6 +57,20 @@ typedef struct host_lab_given {
     const vit_sky_texel *sky;
 } host_lab_given;
 
+/* What baked irradiance is made of, as in the sections. */
+typedef struct host_lab_received {
+    const vit_scene *scene; /* lights, receivers, basis_lights */
+    const vit_light *lights;
+    const vit_basis_group *groups;
+    const vit_u32 *words;
+    const vit_basis_coefficient *coefficients;
+    const vit_basis_frame *frames;
+    const vit_receiver *receivers;
+    const vit_u32 *sides;
+    const vit_receiver_cell *cells;
+    const vit_receiver_split *splits;
+} host_lab_received;
+
 /* n is a multiple of HOST_LAB_LANES. Planes of n floats one after another: a ray is origin, unit direction, limit (negative:
  * not cast), 7 planes; a surface is position off the surface, unit face normal, unit shading normal, reflectance, 12 planes. */
 typedef struct host_lab {
@@ -77,6 +91,14 @@ typedef struct host_lab {
     void (*wrap)(const float *coordinate, uint32_t mode, uint32_t n, float *wrapped);
     /* One of HOST_LAB_FUNCTIONS; planes of n floats in and out. */
     void (*call)(host_lab_function f, const host_lab_given *given, const float *in, uint32_t n, float *out);
+    /* The pass relight: four floats a receiver, of which the last is left as it is. */
+    void (*relight)(const host_lab_received *r, uint32_t frame, float *relit);
+    /* What places get of `light`, four floats a receiver: planes of position, b1, b2; triangle, VIT_NONE for none; back: -1. */
+    void (*receive)(const host_lab_received *r, const float *light, const float *places, const uint32_t *triangle,
+                    const int32_t *back, uint32_t n, float *irradiance);
+    /* Barycentric weights b1, b2 of what rays find at hits, two planes, and whether it is the back: -1. */
+    void (*weights)(const host_lab_mesh *m, const float *rays, const float *distance, const uint32_t *triangle, uint32_t n,
+                    float *b1_b2, int32_t *back);
     /* The product with a coded transfer matrix, of kernels/transfer_product.clh, which has the layout of what is between. */
     void (*transfer)(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y);
 } host_lab;

@@ -218,5 +218,35 @@ static void transfer(const vit_transfer *code, const float *x, float *projected,
         transfer_add_item(i, code, sums, y);
 }
 
+static void relit(const host_lab_received *r, uint32_t frame, float *out) {
+    for (host_item = 0; host_item < r->scene->receivers / 2 / VIT_LANES; host_item++)
+        relight(r->scene, frame, r->lights, r->groups, r->words, r->coefficients, r->frames, r->receivers, out);
+}
+
+static void receive(const host_lab_received *r, const float *light, const float *places, const uint32_t *triangle,
+                    const int32_t *back, uint32_t n, float *irradiance) {
+    for (uint i = 0; i < n; i += VIT_LANES) {
+        const li found = L_AS_INT(L_LOAD(triangle + i)), hit = L_NE(found, L_I((int)VIT_NONE));
+        const lf b1 = L_LOAD(VIT_PLANE(places, 3, n) + i), b2 = L_LOAD(VIT_PLANE(places, 4, n) + i);
+        lv3_store_planes(receivers_light(r->sides, (const uint *)r->cells, r->splits, light, hit, found, L_LOAD(back + i), b1,
+                                         b2, lv3_load_planes(places, n, i)),
+                         irradiance, n, i);
+    }
+}
+
+static void weights(const host_lab_mesh *m, const float *rays, const float *distance, const uint32_t *triangle, uint32_t n,
+                    float *b1_b2, int32_t *back) {
+    for (uint i = 0; i < n; i += VIT_LANES) {
+        lf limit;
+        ray_packet r = packet(rays, n, i, &limit);
+        li found = L_AS_INT(L_LOAD(triangle + i)), hit = L_NE(found, L_I((int)VIT_NONE));
+        surface s = surface_at(MESH, r.o, r.d, l_sel(hit, L_LOAD(distance + i), L_F(1)), hit, found, L_F(0));
+        L_STORE(s.b1, b1_b2 + i);
+        L_STORE(s.b2, VIT_PLANE(b1_b2, 1, n) + i);
+        L_STORE(s.back, back + i);
+    }
+}
+
 extern const host_lab HOST_LAB;
-const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices, wrap, call, transfer};
+const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces, slices,
+                           wrap,     call,    relit,          receive,  weights,  transfer};

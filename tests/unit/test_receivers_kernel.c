@@ -1,0 +1,454 @@
+/* kernels/receivers.cl against doubles: the pass relight, and what samples get between receivers.
+ *
+ * Why this is hard: numbers that are interpolated look right when neighbours are mixed up. Strategy: relight is summed again
+ * from the sections as records.clh describes them, where every limit is met, and numbers behind what a frame may read are no
+ * numbers; receivers at the corners of cells get the values of a linear function of the place, which interpolation must give
+ * back everywhere, and each side, each cell and each half of a parted cell has a function of its own. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "host_lab.h"
+#include "kernel_lab.h"
+
+#include <float.h>
+#include <math.h>
+
+/* ---- the pass relight ---- */
+
+enum {
+    GROUPS = 3,
+    RECEIVERS = GROUPS * VIT_BASIS_GROUP,
+    LIGHTS = 3,
+    MOVING = 2,
+    FRAMES = 4,
+    KNOTS = 3,
+    HALF = VIT_BASIS_GROUP / 2
+};
+enum { WORDS = GROUPS * MOVING * VIT_BASIS_RANK * HALF, COEFFICIENTS = GROUPS * MOVING * VIT_BASIS_RANK * KNOTS };
+
+typedef struct basis_lab {
+    vit_scene scene;
+    vit_light lights[FRAMES * LIGHTS];
+    vit_basis_group groups[GROUPS * MOVING];
+    vit_u32 words[WORDS];
+    vit_basis_coefficient coefficients[COEFFICIENTS];
+    vit_basis_frame frames[FRAMES * MOVING];
+    vit_receiver receivers[RECEIVERS];
+    float relit[RECEIVERS * 4];
+} basis_lab;
+
+static basis_lab lab_of_basis;
+
+static host_lab_received received(const basis_lab *b) {
+    return (host_lab_received){.scene = &b->scene,
+                               .lights = b->lights,
+                               .groups = b->groups,
+                               .words = b->words,
+                               .coefficients = b->coefficients,
+                               .frames = b->frames,
+                               .receivers = b->receivers};
+}
+
+/* A basis with these ranks, of group 0's first light on; the rest is random, and dark light is as likely as bright. */
+static basis_lab *make_basis(const vit_u32 rank[GROUPS * MOVING]) {
+    basis_lab *b = &lab_of_basis;
+    uint64_t random = 7;
+    memset(b, 0, sizeof *b);
+    b->scene = (vit_scene){.lights = LIGHTS, .receivers = RECEIVERS, .basis_lights = MOVING, .frames = FRAMES};
+    for (int i = 0; i < FRAMES * LIGHTS; i++)
+        for (int k = 0; k < 3; k++)
+            b->lights[i].intensity[k] = 4.0f * lab_uniform(&random);
+    vit_u32 word = 0, coefficient = 0;
+    for (int i = 0; i < GROUPS * MOVING; i++) {
+        b->groups[i] = (vit_basis_group){.first_word = word, .rank = rank[i], .first_coefficient = coefficient};
+        word += rank[i] * HALF;
+        coefficient += rank[i] * KNOTS;
+    }
+    for (vit_u32 i = 0; i < WORDS; i++)
+        b->words[i] = i % 97 == 0 ? 0x80008000u : i % 89 == 0 ? 0x80007fffu : (vit_u32)lab_random(&random);
+    for (vit_u32 i = 0; i < COEFFICIENTS; i++)
+        for (int k = 0; k < 3; k++)
+            b->coefficients[i].rgb[k] = i < coefficient ? (lab_uniform(&random) - 0.5f) * 0x1p-15f : NAN;
+    static const struct {
+        vit_u32 knot;
+        float weight;
+    } places[FRAMES] = {{0, 0.375f}, {1, 1.0f}, {2, 0.0f}, {1, 0.7f}};
+    for (int i = 0; i < FRAMES * MOVING; i++)
+        b->frames[i] = (vit_basis_frame){.light = i % MOVING ? 2 : 0,
+                                         .knot = places[(i / MOVING + i % MOVING) % FRAMES].knot,
+                                         .weight = places[(i / MOVING + i % MOVING) % FRAMES].weight};
+    for (int i = 0; i < RECEIVERS; i++)
+        for (int k = 0; k < 3; k++)
+            b->receivers[i].irradiance[k] = 2.0f * lab_uniform(&random);
+    for (int i = 0; i < RECEIVERS * 4; i++)
+        b->relit[i] = -7.0f;
+    return b;
+}
+
+/* The number of vector `k` for receiver `r` of a group. */
+static int number_of(const basis_lab *b, const vit_basis_group *g, vit_u32 k, vit_u32 r) {
+    const vit_u32 word = b->words[g->first_word + k * HALF + r % HALF], half = r < HALF ? word & 0xffffu : word >> 16;
+    return half < 0x8000u ? (int)half : (int)half - 0x10000;
+}
+
+/* Irradiance of a receiver in doubles, not clamped, and the sum of the absolute terms. */
+static double expected(const basis_lab *b, vit_u32 frame, vit_u32 receiver, int channel, double *terms) {
+    double sum = (double)b->receivers[receiver].irradiance[channel];
+    *terms = sum;
+    for (vit_u32 l = 0; l < MOVING; l++) {
+        const vit_basis_group *g = &b->groups[receiver / VIT_BASIS_GROUP * MOVING + l];
+        const vit_basis_frame *at = &b->frames[frame * MOVING + l];
+        const double intensity = (double)b->lights[frame * LIGHTS + at->light].intensity[channel], w = (double)at->weight;
+        for (vit_u32 k = 0; k < g->rank; k++) {
+            const vit_basis_coefficient *c = &b->coefficients[g->first_coefficient + at->knot * g->rank + k];
+            const double here = (double)c->rgb[channel], there = w > 0.0 ? (double)c[g->rank].rgb[channel] : 0.0,
+                         number = number_of(b, g, k, receiver % VIT_BASIS_GROUP);
+            sum += intensity * number * ((1.0 - w) * here + w * there);
+            *terms += intensity * fabs(number) * ((1.0 + w) * fabs(here) + w * fabs(there));
+        }
+    }
+    return sum;
+}
+
+/* The worst error over the sum of absolute terms, of all frames; *dark: receivers' channels that are clamped. */
+static double worst_of_relight(basis_lab *b, uint32_t *dark) {
+    const host_lab_received r = received(b);
+    double worst = 0.0;
+    *dark = 0;
+    for (vit_u32 f = 0; f < FRAMES; f++) {
+        host_lab_find()->relight(&r, f, b->relit);
+        for (vit_u32 i = 0; i < RECEIVERS; i++)
+            for (int k = 0; k < 3; k++) {
+                double terms;
+                const double e = expected(b, f, i, k, &terms), got = (double)b->relit[4 * i + (vit_u32)k];
+                assert_true(got >= 0.0 && got <= DBL_MAX);
+                *dark += e < 0.0;
+                worst = fmax(worst, fabs(got - fmax(e, 0.0)) / fmax(terms, 1e-30));
+            }
+    }
+    return worst;
+}
+
+static void relight_adds_up_what_the_sections_say(void **state) {
+    (void)state;
+    static const vit_u32 ranks[][GROUPS * MOVING] = {{0, 0, 0, 0, 0, 0},    {1, 0, 0, 1, 2, 3},     {32, 32, 32, 32, 32, 32},
+                                                     {0, 32, 7, 1, 31, 12}, {32, 32, 32, 32, 0, 1}, {5, 4, 3, 2, 1, 32}};
+    for (size_t i = 0; i < sizeof ranks / sizeof ranks[0]; i++) {
+        uint32_t dark;
+        const double worst = worst_of_relight(make_basis(ranks[i]), &dark);
+        print_message("ranks %u %u ..: worst %.3g of the terms, %u clamped\n", ranks[i][0], ranks[i][1], worst, dark);
+        assert_true(worst < 5e-7);
+        assert_int_equal(dark > 0, i > 0);
+    }
+}
+
+static void without_moving_light_relight_gives_what_is_still(void **state) {
+    (void)state;
+    static const vit_u32 none[GROUPS * MOVING];
+    basis_lab *b = make_basis(none);
+    const host_lab_received r = received(b);
+    host_lab_find()->relight(&r, 1, b->relit);
+    for (int i = 0; i < RECEIVERS; i++) {
+        assert_memory_equal(b->relit + 4 * i, b->receivers[i].irradiance, sizeof b->receivers[i].irradiance);
+        assert_true(b->relit[4 * i + 3] == -7.0f);
+    }
+}
+
+/* Numbers of a few bits, so that floats are exact: each word has its own pair, the least of 16 bits among them. */
+static void both_halves_of_a_word_keep_their_signs(void **state) {
+    (void)state;
+    static const int numbers[] = {-32768, 32767, -1, 0, 1, -32767, 16384};
+    enum { COUNT = sizeof numbers / sizeof numbers[0] };
+    static const vit_u32 ranks[GROUPS * MOVING] = {1, 0, 0, 1, 0, 0};
+    basis_lab *b = make_basis(ranks);
+    const host_lab_received r = received(b);
+    for (vit_u32 i = 0; i < 2 * HALF; i++)
+        b->words[i] = ((vit_u32)numbers[i % COUNT] & 0xffffu) | (vit_u32)numbers[i / COUNT % COUNT] << 16;
+    for (vit_u32 i = 0; i < 2 * KNOTS; i++)
+        b->coefficients[i] = (vit_basis_coefficient){.rgb = {0x1p-15f, -0x1p-15f, (float)(i % KNOTS) * 0x1p-15f}};
+    for (vit_u32 i = 0; i < FRAMES * LIGHTS; i++)
+        b->lights[i] = (vit_light){.intensity = {1, 2, 4}};
+    for (vit_u32 i = 0; i < RECEIVERS; i++)
+        b->receivers[i] = (vit_receiver){.irradiance = {1, 0.5f, 4}};
+    host_lab_find()->relight(&r, 0, b->relit); /* knots: 0 and 0.375 on, 1 and 1 on */
+    for (vit_u32 i = 0; i < RECEIVERS; i++) {
+        const vit_u32 group = i / VIT_BASIS_GROUP, at = i % VIT_BASIS_GROUP, word = (group == 1 ? HALF : 0) + at % HALF;
+        const double n = group > 1 ? 0.0 : numbers[at < HALF ? word % COUNT : word / COUNT % COUNT] / 32768.0;
+        const double between = group == 1 ? 2.0 : 0.375;
+        assert_true((double)b->relit[4 * i] == fmax(1.0 + n, 0.0));
+        assert_true((double)b->relit[4 * i + 1] == fmax(0.5 - 2.0 * n, 0.0));
+        assert_true((double)b->relit[4 * i + 2] == fmax(4.0 + 4.0 * n * between, 0.0));
+    }
+}
+
+/* ---- between receivers ---- */
+
+enum { MOST_PARTS = 9, MOST_CELLS = MOST_PARTS * MOST_PARTS, SAMPLES = 4096 };
+
+/* One triangle whose front and back have `parts` x `parts` cells, with three receivers a cell and three more behind its split.
+ */
+typedef struct cell_lab {
+    vit_triangle triangle;
+    vit_u32 sides[2];
+    vit_receiver_cell cells[2 * MOST_CELLS];
+    vit_receiver_split splits[2 * MOST_CELLS];
+    float light[2 * 2 * MOST_CELLS * 3 * 4];
+    float places[5 * SAMPLES], irradiance[3 * SAMPLES]; /* planes: position, b1, b2 */
+    uint32_t hit[SAMPLES];
+    int32_t back[SAMPLES];
+} cell_lab;
+
+static cell_lab lab_of_cells;
+
+/* The function that a channel of a side has, of barycentric weights; behind: of the half behind the split. */
+static double field(int side, int behind, int channel, double b1, double b2) {
+    return 3.0 + side * 4.0 + behind * 8.0 + channel + (1.0 + channel) * b1 + (side ? -1.5 : 0.5 * channel) * b2;
+}
+
+/* The corners of cell (i, j), lower or upper: row i from b1 = i / n on. */
+static void corners_of(int n, int i, int j, int upper, double corner[3][2]) {
+    const int lower_at[3][2] = {{i, j}, {i + 1, j}, {i, j + 1}}, upper_at[3][2] = {{i + 1, j + 1}, {i + 1, j}, {i, j + 1}};
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 2; k++)
+            corner[c][k] = (double)(upper ? upper_at : lower_at)[c][k] / n;
+}
+
+static void put_receivers(cell_lab *l, vit_u32 first, int side, int behind, double corner[3][2], vit_u32 receiver[3]) {
+    for (vit_u32 c = 0; c < 3; c++) {
+        receiver[c] = first + c;
+        for (int k = 0; k < 3; k++)
+            l->light[4 * receiver[c] + (vit_u32)k] = (float)field(side, behind, k, corner[c][0], corner[c][1]);
+    }
+}
+
+/* Cells in the order of records.clh and cells.clh: row after row, lower and upper ones in turn. normal: of the splits' planes;
+ * NULL: no cell is parted. */
+static cell_lab *make_cells(int n, const float v0[3], const float v1[3], const float v2[3], const float *normal, float offset) {
+    cell_lab *l = &lab_of_cells;
+    memset(l, 0, sizeof *l);
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        l->triangle.v0[k] = v0[k];
+        l->triangle.v1[k] = v1[k];
+        l->triangle.v2[k] = v2[k];
+        u[k] = (double)v1[k] - (double)v0[k];
+        v[k] = (double)v2[k] - (double)v0[k];
+    }
+    l->triangle.nx = (float)(u[1] * v[2] - u[2] * v[1]);
+    l->triangle.ny = (float)(u[2] * v[0] - u[0] * v[2]);
+    l->triangle.nz = (float)(u[0] * v[1] - u[1] * v[0]);
+    vit_u32 cell = 0;
+    for (int side = 0; side < 2; side++) {
+        l->sides[side] = (vit_u32)n << VIT_SIDE_PARTS_SHIFT | cell;
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n - i; j++)
+                for (int upper = 0; upper < (i + j < n - 1 ? 2 : 1); upper++, cell++) {
+                    double corner[3][2];
+                    corners_of(n, i, j, upper, corner);
+                    put_receivers(l, 6 * cell, side, 0, corner, l->cells[cell].receiver);
+                    put_receivers(l, 6 * cell + 3, side, 1, corner, l->splits[cell].receiver);
+                    l->cells[cell].split = normal ? cell : VIT_NONE;
+                    for (int k = 0; k < 3 && normal; k++)
+                        l->splits[cell].normal[k] = normal[k];
+                    l->splits[cell].offset = offset;
+                }
+    }
+    assert_int_equal(cell, 2 * n * n);
+    return l;
+}
+
+/* Place i at these weights, on a side. */
+static void put_place(cell_lab *l, uint32_t i, double b1, double b2, int side) {
+    const vit_triangle *t = &l->triangle;
+    l->hit[i] = 0;
+    l->back[i] = -side;
+    l->places[3 * SAMPLES + i] = (float)b1;
+    l->places[4 * SAMPLES + i] = (float)b2;
+    for (uint32_t k = 0; k < 3; k++) {
+        const double a = (double)t->v0[k];
+        l->places[k * SAMPLES + i] = (float)(a + b1 * ((double)t->v1[k] - a) + b2 * ((double)t->v2[k] - a));
+    }
+}
+
+/* What a channel of place i should get. */
+static double field_of(const cell_lab *l, uint32_t i, int behind, int channel) {
+    return field(-l->back[i], behind, channel, (double)l->places[3 * SAMPLES + i], (double)l->places[4 * SAMPLES + i]);
+}
+
+/* Corners of the lattice and of one four times as fine, which are edges and middles of cells, then anywhere inside. */
+static void put_places(cell_lab *l, int n) {
+    uint64_t random = 3;
+    uint32_t i = 0;
+    for (int side = 0; side < 2; side++)
+        for (int a = 0; a <= 4 * n; a++)
+            for (int b = 0; a + b <= 4 * n; b++)
+                put_place(l, i++, a / (4.0 * n), b / (4.0 * n), side);
+    assert_in_range(i, 1, SAMPLES - 100);
+    for (; i < SAMPLES; i++) {
+        double a = (double)lab_uniform(&random), b = (double)lab_uniform(&random);
+        put_place(l, i, a + b > 1.0 ? 1.0 - a : a, a + b > 1.0 ? 1.0 - b : b, (int)(i % 2));
+    }
+}
+
+static void receive(cell_lab *l) {
+    const host_lab_received r = {.sides = l->sides, .cells = l->cells, .splits = l->splits};
+    host_lab_find()->receive(&r, l->light, l->places, l->hit, l->back, SAMPLES, l->irradiance);
+}
+
+static const float corner0[3] = {0.5f, -1.0f, 2.0f}, corner1[3] = {3.0f, -0.5f, 1.0f}, corner2[3] = {1.0f, 2.0f, 2.5f};
+
+static void a_linear_function_comes_back_in_every_cell_on_both_sides(void **state) {
+    (void)state;
+    for (int n = 1; n <= MOST_PARTS; n++) {
+        cell_lab *l = make_cells(n, corner0, corner1, corner2, NULL, 0);
+        double worst = 0.0;
+        put_places(l, n);
+        receive(l);
+        for (uint32_t i = 0; i < SAMPLES; i++)
+            for (uint32_t k = 0; k < 3; k++) {
+                const double e = field_of(l, i, 0, (int)k);
+                worst = fmax(worst, fabs((double)l->irradiance[k * SAMPLES + i] - e));
+            }
+        print_message("%d parts: worst %.3g\n", n, worst);
+        assert_true(worst < 2e-5);
+    }
+}
+
+static void samples_without_a_hit_get_nothing(void **state) {
+    (void)state;
+    cell_lab *l = make_cells(2, corner0, corner1, corner2, NULL, 0);
+    put_places(l, 2);
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        l->hit[i] = i % 3 == 0 || i < 64 ? VIT_NONE : 0;
+    receive(l);
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        for (uint32_t k = 0; k < 3; k++)
+            assert_int_equal(l->irradiance[k * SAMPLES + i] == 0.0f, l->hit[i] == VIT_NONE);
+}
+
+/* Behind the plane, and on it, samples get the other receivers' light; the nearest to it may fall on either side. */
+static void a_parted_cell_has_other_light_behind_its_plane(void **state) {
+    (void)state;
+    static const float normal[3] = {0.6f, 0.0f, -0.8f};
+    for (int n = 1; n <= 4; n++) {
+        cell_lab *l = make_cells(n, corner0, corner1, corner2, normal, -0.25f);
+        uint32_t front = 0, back = 0;
+        put_places(l, n);
+        receive(l);
+        for (uint32_t i = 0; i < SAMPLES; i++) {
+            double height = 0.25;
+            for (uint32_t k = 0; k < 3; k++)
+                height += (double)normal[k] * (double)l->places[k * SAMPLES + i];
+            const int behind = height <= 0.0;
+            *(behind ? &back : &front) += 1;
+            for (uint32_t k = 0; k < 3 && fabs(height) > 1e-6; k++) {
+                const double e = field_of(l, i, behind, (int)k);
+                assert_true(fabs((double)l->irradiance[k * SAMPLES + i] - e) < 4e-5);
+            }
+        }
+        assert_true(front > 100 && back > 100);
+    }
+}
+
+/* Exactly on the plane is behind it: the plane goes through dyadic places of a triangle of such corners. */
+static void what_lies_on_the_plane_is_behind_it(void **state) {
+    (void)state;
+    static const float v0[3] = {0, 0, 0}, v1[3] = {1, 0, 0}, v2[3] = {0, 1, 0}, normal[3] = {1, 0, 0};
+    cell_lab *l = make_cells(1, v0, v1, v2, normal, 0.25f);
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        put_place(l, i, i % 2 ? 0.25 : nextafterf(0.25f, 1.0f), 0.5, 0);
+    receive(l);
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        assert_true(fabs((double)l->irradiance[i] - field(0, i % 2, 0, 0.25, 0.5)) < 1e-5);
+}
+
+/* Beyond the edges by what rounding makes of a hit, light is that of the edge. */
+static void just_outside_is_the_edge(void **state) {
+    (void)state;
+    cell_lab *l = make_cells(3, corner0, corner1, corner2, NULL, 0);
+    uint64_t random = 5;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        const double along = (double)lab_uniform(&random), off = 1e-6 * (double)lab_uniform(&random);
+        put_place(l, i,
+                  i % 3 == 0   ? -off
+                  : i % 3 == 1 ? along
+                               : along + off,
+                  i % 3 == 0   ? along
+                  : i % 3 == 1 ? -off
+                               : 1.0 - along + off,
+                  (int)(i % 2));
+    }
+    receive(l);
+    for (uint32_t i = 0; i < SAMPLES; i++)
+        assert_true(fabs((double)l->irradiance[i] - field_of(l, i, 0, 0)) < 1e-4);
+}
+
+/* Rays that are said to hit it, from all round. */
+static void find_weights(cell_lab *l) {
+    static float rays[7 * SAMPLES], distance[SAMPLES];
+    const vit_scene scene = {.triangles = 1};
+    const vit_attributes attributes = {.normal = {0}};
+    const vit_material material = {.texture = VIT_NONE, .exponent = 1, .ior = 1};
+    const host_lab_mesh m = {.scene = &scene, .triangles = &l->triangle, .attributes = &attributes, .materials = &material};
+    uint64_t random = 11;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double d[3], length = 0.0;
+        for (int k = 0; k < 3; k++) {
+            d[k] = (double)lab_uniform(&random) - 0.5;
+            length += d[k] * d[k];
+        }
+        distance[i] = i % 5 ? 1.0f : 0.0f;
+        for (uint32_t k = 0; k < 3; k++) {
+            const double unit = d[k] / sqrt(length);
+            rays[k * SAMPLES + i] = (float)((double)l->places[k * SAMPLES + i] - unit * (double)distance[i]);
+            rays[(3 + k) * SAMPLES + i] = (float)unit;
+        }
+    }
+    host_lab_find()->weights(&m, rays, distance, l->hit, SAMPLES, l->places + 3 * SAMPLES, l->back);
+}
+
+/* Triangles of any size and shape that floats can state: light is a number, none below the least receiver's by more than
+ * rounding, and at most twice the greatest's, where places have no meaning any more. */
+static void degenerate_triangles_give_numbers(void **state) {
+    (void)state;
+    static const float sizes[] = {1e-30f, 1e-22f, 1e-20f, 3e-19f, 1e-12f, 1e-6f, 1.0f, 1e6f, 1e12f, 1e18f};
+    static const float shapes[][3] = {{0, 1, 0}, {1, 1e-3f, 0}, {1, 1e-7f, 0}, {0.5f, 0, 1e-12f}, {-1, 1e-5f, 1e-5f}};
+    uint32_t judged = 0;
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++)
+        for (size_t h = 0; h < sizeof shapes / sizeof shapes[0]; h++)
+            for (int n = 1; n <= 4; n += 3) {
+                const float v0[3] = {0, 0, 0}, v1[3] = {sizes[s], 0, 0},
+                            v2[3] = {sizes[s] * shapes[h][0], sizes[s] * shapes[h][1], sizes[s] * shapes[h][2]};
+                cell_lab *l = make_cells(n, v0, v1, v2, NULL, 0);
+                if (l->triangle.nx == 0.0f && l->triangle.ny == 0.0f && l->triangle.nz == 0.0f)
+                    l->triangle.nz = FLT_TRUE_MIN; /* the loader takes no normal of 0 */
+                put_places(l, n);
+                for (uint32_t i = 0; i < SAMPLES; i += 7) /* and places that are not on it */
+                    l->places[i % 3 * SAMPLES + i] += i % 2 ? 1.0f : -1e15f;
+                find_weights(l);
+                receive(l);
+                judged++;
+                for (uint32_t i = 0; i < SAMPLES; i++)
+                    if (!(l->irradiance[i] >= 2.9f / 2 && l->irradiance[i] <= 2.0f * 13.0f))
+                        fail_msg("size %g, shape %zu, %d parts: %g at %g %g", (double)sizes[s], h, n, (double)l->irradiance[i],
+                                 (double)l->places[3 * SAMPLES + i], (double)l->places[4 * SAMPLES + i]);
+            }
+    assert_int_equal(judged, 100);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(relight_adds_up_what_the_sections_say),
+        cmocka_unit_test(without_moving_light_relight_gives_what_is_still),
+        cmocka_unit_test(both_halves_of_a_word_keep_their_signs),
+        cmocka_unit_test(a_linear_function_comes_back_in_every_cell_on_both_sides),
+        cmocka_unit_test(samples_without_a_hit_get_nothing),
+        cmocka_unit_test(a_parted_cell_has_other_light_behind_its_plane),
+        cmocka_unit_test(what_lies_on_the_plane_is_behind_it),
+        cmocka_unit_test(just_outside_is_the_edge),
+        cmocka_unit_test(degenerate_triangles_give_numbers),
+    };
+    return cmocka_run_group_tests_name("receivers", tests, NULL, NULL);
+}
