@@ -72,8 +72,9 @@ SANITIZED_list := cornell --zones 0 --sample-bits 16
 SANITIZED_zones := cornell --zones 2 --indirect-samples 4 --kernel flattened
 SANITIZED_raw := cornell --estimate buckets --smoothing raw --normal-keys 1 --zones 0
 SANITIZED_sparse := cornell --estimate buckets --indirect-samples 16 --tile 8 --bounce-sequence 1
+SANITIZED_basis := cornell --indirect basis --receiver-rays 64 --receiver-spacing 24 --sample-bits 16
 SANITIZED_atrium := atrium --zones 0 --texture-filter trilinear
-SANITIZED_PLAYS := $(addprefix sanitized-play/,list zones raw sparse atrium)
+SANITIZED_PLAYS := $(addprefix sanitized-play/,list zones raw sparse basis atrium)
 $(SANITIZED_PLAYS): sanitized-play/%: $(B)/vitrine-bake $(SCENES_MADE)
 	@mkdir -p build/sanitize/packs
 	@tests/run.sh $@ sh -ec '$(B)/vitrine-bake $(B)/scenes/$(firstword $(SANITIZED_$*)).cfg -o build/sanitize/packs/$*.vit --quiet --no-check --device host \
