@@ -4,8 +4,10 @@
 #include <string.h>
 
 #define MOST_RECEIVERS 196608u
-#define CELLS 65536u
-#define BOUNCE_RAYS 8000000u
+#define CELLS_PER_RECEIVER 4u /* of surfaces that light comes from, about */
+#define CELLS_LEAST 8192u
+#define CELLS_MOST 65536u
+#define BOUNCE_RAYS 128u /* per cell, about */
 
 /* States of the lights: what stays first, then each moving light at its knots, with an intensity of 1. */
 typedef struct states {
@@ -109,6 +111,8 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
         status = make_states(in, &s, why);
     if (status == VIT_OK) {
         irradiance = malloc(((size_t)out->receivers.count * 3u * s.count + 1u) * sizeof *irradiance);
+        const uint32_t wanted = CELLS_PER_RECEIVER * out->receivers.count,
+                       of_light = wanted < CELLS_LEAST ? CELLS_LEAST : wanted > CELLS_MOST ? CELLS_MOST : wanted;
         const transport_input t = {.rays = in->rays,
                                    .geometry = in->geometry,
                                    .receivers = out->receivers.receivers,
@@ -116,9 +120,9 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .states = s.state,
                                    .state_count = s.count,
                                    .reflections = in->reflections,
-                                   .cells = CELLS,
+                                   .cells = of_light,
                                    .receiver_rays = in->receiver_rays,
-                                   .bounce_rays = BOUNCE_RAYS,
+                                   .bounce_rays = of_light * BOUNCE_RAYS,
                                    .panes = in->panes,
                                    .threads = in->threads,
                                    .progress = in->progress,
@@ -126,7 +130,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
         status = irradiance ? transport_find(&t, irradiance, &out->report, why)
                             : bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     }
-    if (status == VIT_OK)
+    if (status == VIT_OK && irradiance)
         status = keep(in, &s, irradiance, out, why);
     free(irradiance);
     drop_states(&s, in->moving_count);

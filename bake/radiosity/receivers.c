@@ -290,7 +290,7 @@ static uint32_t corner_receiver(placing *p, uint32_t side, float b1, float b2, f
         return p->found[at] = new_receiver(p, side, in1, in2);
     }
     const receiver *r = p->out->receivers + p->found[at];
-    if (r->side == side || !p->met[side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, lift)))
+    if (!p->met[side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, lift)))
         return p->found[at];
     return new_receiver(p, side, in1, in2);
 }
@@ -388,12 +388,13 @@ static bool take_cells(placing *p) {
         if (!(p->spacing[p->cells.side_of[i]] > 0.0f))
             continue;
         const separation *apart = s.found + i;
-        take_corners(p, i, apart->places & all ? apart->places & all : all, c->receiver);
+        take_corners(p, i, apart->places & ~apart->alone ? apart->places & ~apart->alone : apart->places, c->receiver);
         if (s.is[i] && make_room_for_split(p)) {
             vit_receiver_split *t = o->splits + o->split_count;
             *t = (vit_receiver_split){.offset = apart->offset};
             memcpy(t->normal, apart->normal, sizeof t->normal);
-            take_corners(p, i, all & ~apart->places & ~apart->alone, t->receiver);
+            const uint32_t behind = all & ~apart->places;
+            take_corners(p, i, behind & ~apart->alone ? behind & ~apart->alone : behind, t->receiver);
             c->split = o->split_count++;
         }
         fine = !p->failed;

@@ -1,7 +1,8 @@
 #include "radiosity/separation.h"
 
-#define NEAR_CORNER 0.9f /* of the way from the middle to a corner */
-#define CANDIDATES 12u   /* planes that are tried, at most */
+#define NEAR_CORNER 0.98f /* of the way from the middle to a corner */
+#define EVEN 16u          /* places even over the cell; the last three are its corners */
+#define CANDIDATES 12u    /* planes that are tried, at most */
 
 bool separation_sees(const photon_rays *rays, vec3 a, vec3 b) {
     const vec3 way = vec3_sub(b, a);
@@ -11,6 +12,12 @@ bool separation_sees(const photon_rays *rays, vec3 a, vec3 b) {
 
 /* Rows of 1, 3, 5 and 7 small triangles: their middles. */
 void separation_place(const cell_corners *k, uint32_t i, float *b1, float *b2) {
+    if (i >= EVEN) {
+        const float m1 = (k->b1[0] + k->b1[1] + k->b1[2]) / 3.0f, m2 = (k->b2[0] + k->b2[1] + k->b2[2]) / 3.0f;
+        *b1 = m1 + (k->b1[i - EVEN] - m1) * NEAR_CORNER;
+        *b2 = m2 + (k->b2[i - EVEN] - m2) * NEAR_CORNER;
+        return;
+    }
     uint32_t row = 0;
     while ((row + 1) * (row + 1) <= i)
         row++;
@@ -45,24 +52,24 @@ static void note(search *s, vec3 a, vec3 b) {
         s->triangle[s->planes++] = triangle;
 }
 
-/* Cheap: corners and the middle. Most cells pass, and are done. */
+/* Cheap: corners. A plane that crosses a triangle parts one of them from the others, so that most cells pass, and are done. */
 static bool looks_open(search *s, uint32_t side, const cell_corners *k, float lift) {
     const vec3 face = side_face(s->g, side);
-    const float m1 = (k->b1[0] + k->b1[1] + k->b1[2]) / 3.0f, m2 = (k->b2[0] + k->b2[1] + k->b2[2]) / 3.0f;
-    vec3 p[4];
-    for (int i = 0; i < 4; i++) {
-        const float w = i < 3 ? NEAR_CORNER : 0.0f;
-        p[i] = vec3_along(side_place(s->g, side, i < 3 ? m1 + (k->b1[i] - m1) * w : m1, i < 3 ? m2 + (k->b2[i] - m2) * w : m2),
-                          face, lift);
+    vec3 p[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        float b1, b2;
+        separation_place(k, EVEN + i, &b1, &b2);
+        p[i] = vec3_along(side_place(s->g, side, b1, b2), face, lift);
     }
     bool open = true;
-    for (int a = 0; a < 4; a++)
-        for (int b = a + 1; b < 4; b++)
-            if (!separation_sees(s->rays, p[a], p[b])) {
-                note(s, p[a], p[b]);
-                note(s, p[b], p[a]);
-                open = false;
-            }
+    for (int a = 0; a < 3; a++) {
+        const vec3 from = p[a], to = p[(a + 1) % 3];
+        if (separation_sees(s->rays, from, to))
+            continue;
+        note(s, from, to);
+        note(s, to, from);
+        open = false;
+    }
     return open;
 }
 
@@ -101,12 +108,8 @@ bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, 
     if (looks_open(&s, side, k, lift))
         return false;
     look_round(&s, side, k, lift);
-    uint32_t there = all;
     for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
-        if ((s.hidden[i] | 1u << i) == all)
-            there &= ~(1u << i);
-    out->alone = all & ~there;
-    out->places = there;
+        out->alone |= (s.hidden[i] | 1u << i) == all ? 1u << i : 0u;
     int best = 0;
     for (uint32_t c = 0; c < s.planes; c++) {
         const vec3 n = side_face(g, 2 * s.triangle[c]);
@@ -114,7 +117,7 @@ bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, 
         uint32_t front = 0;
         for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
             front |= vec3_dot(n, s.at[i]) > offset ? 1u << i : 0u;
-        const uint32_t a = front & there, b = ~front & there;
+        const uint32_t a = front, b = ~front & all;
         const int score = pairs_between(&s, a, b, true) - pairs_between(&s, a, b, false);
         if (a && b && score > best) {
             best = score;

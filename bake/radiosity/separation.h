@@ -6,7 +6,7 @@
 #include "geometry/cells.h"
 #include "light/photon_rays.h"
 
-#define SEPARATION_PLACES 16u /* of a cell that look at each other */
+#define SEPARATION_PLACES 19u /* of a cell that look at each other */
 
 typedef struct separation {
     float normal[3], offset; /* places p with normal . p > offset are in front */
@@ -16,7 +16,7 @@ typedef struct separation {
 
 /* Place i of a cell, 0 <= i < SEPARATION_PLACES, even over it: barycentric weights in its triangle. */
 void separation_place(const cell_corners *k, uint32_t i, float *b1, float *b2);
-/* False: all places but those alone see each other, `lift` metres above the surface, or no plane explains why not. */
+/* False: all places see each other, `lift` metres above the surface, or no plane explains why not; then all are in front. */
 bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, const cell_corners *k, float lift,
                      separation *out);
 /* Does a place see another? Both on sides of triangles, lifted along their faces. */
