@@ -111,8 +111,9 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
         status = make_states(in, &s, why);
     if (status == VIT_OK) {
         irradiance = malloc(((size_t)out->receivers.count * 3u * s.count + 1u) * sizeof *irradiance);
-        const uint32_t wanted = CELLS_PER_RECEIVER * out->receivers.count,
-                       of_light = wanted < CELLS_LEAST ? CELLS_LEAST : wanted > CELLS_MOST ? CELLS_MOST : wanted;
+        const uint32_t wanted = CELLS_PER_RECEIVER * out->receivers.count, of_light = wanted < CELLS_LEAST  ? CELLS_LEAST
+                                                                                      : wanted > CELLS_MOST ? CELLS_MOST
+                                                                                                            : wanted;
         const transport_input t = {.rays = in->rays,
                                    .geometry = in->geometry,
                                    .receivers = out->receivers.receivers,

@@ -172,7 +172,8 @@ static bool share_out(lighting *l) {
         }
         for (uint32_t i = 0; i < t->count && all[1] > 0.0; i++) {
             const double w = (double)l->weight[i];
-            const double part = (w / all[0] + w * variance[t->cell[i] / 2 / BLOCK] / all[1]) * 0.5 * MORE_LOOKS * t->in->cells / looks;
+            const double part =
+                (w / all[0] + w * variance[t->cell[i] / 2 / BLOCK] / all[1]) * 0.5 * MORE_LOOKS * t->in->cells / looks;
             l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
         }
     }

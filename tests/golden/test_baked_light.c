@@ -6,8 +6,8 @@
 #include "scene_lab.h"
 #include <math.h>
 
-#define SIDE 48                       /* pixels of a frame's edge */
-enum { BRIGHT, DARK, FOOT, VIEWS };   /* frames: the bright room, the dark one, floor and foot of its wall */
+#define SIDE 48                     /* pixels of a frame's edge */
+enum { BRIGHT, DARK, FOOT, VIEWS }; /* frames: the bright room, the dark one, floor and foot of its wall */
 #define FLOATS ((size_t)4 * SIDE * SIDE * VIEWS)
 #define BASIS "--indirect basis --receiver-rays 256"
 
