@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_SAMPLES 4u      /* of each light that is found by chance, at each of a cell's places */
-#define MORE_LOOKS 24000000.0 /* at lights, shared out among the cells by how much each adds to the error */
-#define BLOCK 64u             /* cells that are alike in how light varies on them */
-#define MOST_SAMPLES 16384u   /* of a cell */
-#define LIFT 0.04f            /* in edges: as in transport_rows.c */
+#define LEAST_SAMPLES 4u    /* of each light that is found by chance, at each of a cell's places */
+#define MORE_LOOKS 384.0    /* at lights, per cell that is wanted, shared out by how much each adds to the error */
+#define BLOCK 64u           /* cells that are alike in how light varies on them */
+#define MOST_SAMPLES 16384u /* of a cell */
+#define LIFT 0.04f          /* in edges: as in transport_rows.c */
 
 /* A light that is everywhere else than at one place or in one direction: looked at by chance. */
 static bool is_sampled(const photons_light *l) {
@@ -102,7 +102,8 @@ static void light_cell(void *user, uint32_t n, uint64_t *rays) {
     }
     /* A single place tells nothing of how light varies: as much as it is itself. */
     const double mean = sum / places;
-    l->variance[n] = places > 1 ? (squares - mean * sum) / (places - 1) : mean * mean;
+    const double spread = squares - mean * sum; /* rounding may make it negative */
+    l->variance[n] = places == 1 ? mean * mean : spread > 0.0 ? spread / (places - 1) : 0.0;
 }
 
 /* A place of the cell's part that chance finds, if one of the places where rays met it sees it. */
