@@ -41,7 +41,7 @@ static inline occlusion_lab occlusion_open(player *p, const ray_planes *rays) {
     static const uint32_t scene[] = {B_scene, B_triangles, B_attributes, B_materials, B_textures, B_mips, B_texels, B_bvh};
     const vit_opencl *d = p->v->state;
     const char *sources[LAB_SOURCES];
-    char options[1024];
+    char options[4096]; /* as long as the device may make them */
     cl_int e;
     occlusion_lab l;
     if (vit_kernel_source_count >= LAB_SOURCES)
