@@ -1,32 +1,27 @@
-/* Indirect light is a family: the pass estimate_all, and what it and sparse.cl ask of whichever method makes the light. Which
- * samples are to be lit, and which go together: indirect_keys. Their irradiance: indirect_gather. A further method adds its
- * branch to both, its buffers to INDIRECT_PARAMETERS and ARGS_INDIRECT (runtime/pass_table.h), and its row to
- * VIT_INDIRECT_MAKERS; what fills its buffers are passes of its own. */
+/* Indirect light from photons, by list or by buckets: the pass estimate_all, and what it and sparse.cl ask of either. Which
+ * samples are to be lit, and which go together: indirect_keys. Their irradiance: indirect_gather. A further way to gather
+ * photons adds its branch there, its buffers to INDIRECT_PARAMETERS and ARGS_INDIRECT (runtime/pass_table.h). Light that is
+ * looked up at a sample's place, of baked receivers, is added where samples are made (receivers.cl, samples.cl). */
 
-/* What the makers read, of all of them: buffers that the pack's effects do not call for are NULL. Photons: list or buckets. */
+/* Buffers that the pack's effects do not call for are NULL. */
 #define INDIRECT_PARAMETERS                                                                                                    \
     global const vit_scene *scene, global const vit_camera *cameras, uint frame, uint max_nodes, global const uint *masks,     \
         global const uint *prefix, global const uint *list_first, global const uint *list_count, global const uint *list,      \
         global const vit_photon *photons, global const int *bounds, global const float *buckets, global const uint *keys,      \
-        global const uint *albedo, global const float *position, global const uint *normal, ESTIMATE_BAKED
+        global const float *position, global const uint *normal, ESTIMATE_BAKED
 #define INDIRECT_ARGUMENTS                                                                                                     \
-    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, albedo,     \
-        position, normal, accept, inverse_area
+    scene, cameras, frame, max_nodes, masks, prefix, list_first, list_count, list, photons, bounds, buckets, keys, position,   \
+        normal, accept, inverse_area
 
-/* Keys of samples: negative where they get no indirect light, nothing hit or a dark side. Samples of one key are best estimated
- * together: of photons, those of a cluster. */
-static inline li indirect_key(lu albedo) {
-    return L_NE(L_AS_INT(albedo & VIT_SAMPLE_DARK), L_I(0));
-}
-
-/* Of the lanes' samples from `first` on. */
-static inline li indirect_keys(global const uint *keys, global const uint *albedo, uint first) {
-    return VIT_EFFECT_PHOTONS ? L_AS_INT(L_LOAD(keys + first)) : indirect_key(L_LOAD(albedo + first));
+/* Keys of the lanes' samples from `first` on, those of a cluster the same; negative where they get no indirect light: nothing
+ * hit or a dark side. Samples of one key are best estimated together. */
+static inline li indirect_keys(global const uint *keys, uint first) {
+    return L_AS_INT(L_LOAD(keys + first));
 }
 
 /* Of the samples of these numbers. */
-static inline li indirect_keys_at(global const uint *keys, global const uint *albedo, li at) {
-    return VIT_EFFECT_PHOTONS ? L_AS_INT(l_gather_u(keys, at)) : indirect_key(l_gather_u(albedo, at));
+static inline li indirect_keys_at(global const uint *keys, li at) {
+    return L_AS_INT(l_gather_u(keys, at));
 }
 
 /* Irradiance of the lanes' samples, W/m2; 0 where the key is negative. at: their numbers. */
@@ -43,7 +38,7 @@ kernel void estimate_all(INDIRECT_PARAMETERS, global float *indirect WORK_PARAME
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n)
         return;
-    li key = indirect_keys(keys, albedo, first);
+    li key = indirect_keys(keys, first);
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     WORK_BEGIN
     if (l_any(L_GE(key, L_I(0)))) {

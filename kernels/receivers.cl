@@ -31,8 +31,8 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
         global const uint *vector = words + g->first_word + slot;
         WORK_ADD(evaluations, (ulong)rank * (2 * VIT_LANES));
         for (uint k = 0; k < rank; k++) {
-            li word = L_AS_INT(L_LOAD(vector + k * RELIGHT_HALF));
-            lf a = L_FROM_INT((word << 16) >> 16), b = L_FROM_INT(word >> 16);
+            lu word = L_LOAD(vector + k * RELIGHT_HALF); /* two signed halves */
+            lf a = L_FROM_INT(L_AS_INT(word << 16) >> 16), b = L_FROM_INT(L_AS_INT(word) >> 16);
             lv3 e = lv3_set(L_F(fma(next[k].rgb[0] - c[k].rgb[0], weight, c[k].rgb[0]) * intensity[0]),
                             L_F(fma(next[k].rgb[1] - c[k].rgb[1], weight, c[k].rgb[1]) * intensity[1]),
                             L_F(fma(next[k].rgb[2] - c[k].rgb[2], weight, c[k].rgb[2]) * intensity[2]));

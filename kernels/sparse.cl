@@ -57,14 +57,13 @@ static inline void sparse_estimate(INDIRECT_PARAMETERS, global const uint *flags
 }
 
 /* Keys of the slots from `first` on; negative beyond `end` and where nothing is to be estimated. */
-static inline li sparse_keys(global const uint *keys, global const uint *albedo, global const uint *flags, uint first,
-                             uint end) {
+static inline li sparse_keys(global const uint *keys, global const uint *flags, uint first, uint end) {
     li slot = (int)first + L_INDEX;
     if (flags) { /* end is a multiple of 16 */
         li flagged = (L_I((int)(flags[first / 16] >> (first & 15))) >> L_INDEX) & 1;
-        return l_any(flagged) ? indirect_keys(keys, albedo, first) | (flagged - 1) : L_I(-1);
+        return l_any(flagged) ? indirect_keys(keys, first) | (flagged - 1) : L_I(-1);
     }
-    li key = indirect_keys_at(keys, albedo, sparse_sample(min(slot, L_I((int)(end - 1)))));
+    li key = indirect_keys_at(keys, sparse_sample(min(slot, L_I((int)(end - 1)))));
     return l_sel_i(L_LT(slot, L_I((int)end)), key, L_I(-1));
 }
 
@@ -78,7 +77,7 @@ static inline void sparse_tile(INDIRECT_PARAMETERS, global const uint *flags, gl
         uint found = 0;
         li below = L_I(-1);
         for (uint first = begin; first < end; first += VIT_LANES) {
-            li k = sparse_keys(keys, albedo, flags, first, end);
+            li k = sparse_keys(keys, flags, first, end);
             below = max(below, l_sel_i(L_LT(k, L_I(key)), k, L_I(-1)));
             for (uint hits = l_bits(L_EQ(k, L_I(key))); hits != 0; hits &= hits - 1)
                 mine[found++] = (int)(first + 31u - (uint)clz(hits & (~hits + 1u)));
@@ -184,7 +183,7 @@ kernel void interpolate(global const vit_scene *scene, global const vit_camera *
         area_lights |= l_bits(sparse_area_lights(L_LOAD(albedo + block * 16 + at))) << at;
     for (uint at = 0; at < 16; at += VIT_LANES) {
         uint first = block * 16 + at;
-        li has = L_GE(indirect_keys(keys, albedo, first), L_I(0)), pixel = (int)at + L_INDEX;
+        li has = L_GE(indirect_keys(keys, first), L_I(0)), pixel = (int)at + L_INDEX;
         estimate_sample own = estimate_load(scene, first, position, normal, accept, inverse_area);
         lv3 sum = lv3_set(L_F(0), L_F(0), L_F(0)), p = own.p, s = own.s;
         lf depth = lv3_dot(lv3_sub(p, lv3_load(camera->eye)), lv3_load(camera->forward)),

@@ -13,10 +13,10 @@
 #define ARGS_RAYS ARGS_SURFACE, B(bvh)
 #define ARGS_WORK B(work), V(pass) /* last, in passes that count on the device */
 #define ARGS_ESTIMATE B(masks), B(prefix), B(list_first), B(list_count), B(list), B(photons)
-/* What the makers of indirect light read: of all of them (kernels/indirect.cl, INDIRECT_PARAMETERS). */
+/* What gathers photons reads, by list or by buckets (kernels/indirect.cl, INDIRECT_PARAMETERS). */
 #define ARGS_INDIRECT                                                                                                          \
-    B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(albedo), B(position),       \
-        B(normal), B(accept), B(inverse_area)
+    B(scene), B(cameras), V(frame), V(max_nodes), ARGS_ESTIMATE, B(bounds), B(buckets), B(keys), B(position), B(normal),       \
+        B(accept), B(inverse_area)
 
 #define ARGS_ROUND B(cameras), V(frame), V(round), V(layers), B(active)
 

@@ -3,6 +3,11 @@
 
 #define MOST_MIRRORS 16u /* that a ray meets one after another */
 
+bool gather_is_matt(const photon_scene *s, uint32_t triangle) {
+    const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
+    return VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
+}
+
 gather_hit gather(const photon_rays *rays, const geometry *g, vec3 o, vec3 d, uint32_t chance) {
     const photon_scene *s = rays->s;
     vec3 power = {1.0f, 1.0f, 1.0f};
@@ -14,8 +19,7 @@ gather_hit gather(const photon_rays *rays, const geometry *g, vec3 o, vec3 d, ui
         r.weight = (power.x + power.y + power.z) / 3.0f;
         if (triangle == VIT_NONE)
             return r;
-        const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
-        if (VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE) {
+        if (gather_is_matt(s, triangle)) {
             const vit_triangle *p = s->triangles + triangle;
             const vec3 v0 = vec3_load(p->v0), e1 = vec3_sub(vec3_load(p->v1), v0), e2 = vec3_sub(vec3_load(p->v2), v0);
             const vec3 at = vec3_sub(vec3_along(o, d, t), v0);

@@ -64,8 +64,8 @@ static float cell_edge(void *user, uint32_t side) {
 
 static bool reflects(const photon_scene *s, uint32_t triangle) {
     const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
-    const bool matt = VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
-    return matt && m->albedo[0] + m->albedo[1] + m->albedo[2] + m->specular[0] + m->specular[1] + m->specular[2] > 0.0f;
+    return gather_is_matt(s, triangle) &&
+           m->albedo[0] + m->albedo[1] + m->albedo[2] + m->specular[0] + m->specular[1] + m->specular[2] > 0.0f;
 }
 
 static bool is_in(const patches_input *in, uint32_t side) {

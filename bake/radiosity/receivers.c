@@ -65,10 +65,7 @@ static void look_row(void *user, uint32_t row) {
 }
 
 static bool takes_light(const receivers_input *in, uint32_t side) {
-    const photon_scene *s = in->rays->s;
-    const vit_material *m = s->materials + (s->attributes[side / 2].material & VIT_MATERIAL_INDEX);
-    return !side_is_dark(in->geometry, side) &&
-           VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
+    return !side_is_dark(in->geometry, side) && gather_is_matt(in->rays->s, side / 2);
 }
 
 static uint32_t vertex_slot(const float v[3], uint32_t slots) {

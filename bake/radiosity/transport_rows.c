@@ -23,10 +23,7 @@ typedef struct pilot {
 
 /* Sides that are thought dark may get some light all the same. */
 static bool gives_light(const transport *t, uint32_t side) {
-    const photon_scene *s = t->in->rays->s;
-    const vit_material *m = s->materials + (s->attributes[side / 2].material & VIT_MATERIAL_INDEX);
-    return side_area(t->in->geometry, side) > 0.0f &&
-           VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
+    return side_area(t->in->geometry, side) > 0.0f && gather_is_matt(t->in->rays->s, side / 2);
 }
 
 static vec3 leave(const transport *t, uint32_t side, float b1, float b2) {
