@@ -186,7 +186,7 @@ vit_status options_apply(const options *o, scene *s, vit_text *why) {
     s->quality_auto = o->quality ? strcmp(o->quality, "auto") == 0 : s->quality_auto;
     for (int i = 0; i < SETTINGS; i++)
         if (o->settings[i] && settings_put(&setting_rows[i], o->settings[i], &s->quality))
-            s->quality_kept |= (uint32_t)1 << i;
+            s->quality_kept |= (uint64_t)1 << i;
     vit_text fault;
     if (!settings_agree(&s->quality, &fault))
         return usage(why, "with these options", fault.text);

@@ -38,7 +38,7 @@ typedef struct search {
     check_found found;   /* what that has, and from then on the parts that direct light has in what was found last */
 } search;
 
-static bool kept(const search *s, uint32_t setting) {
+static bool kept(const search *s, uint64_t setting) {
     return (s->p->scene.quality_kept & setting) != 0;
 }
 

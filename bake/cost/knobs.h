@@ -9,7 +9,7 @@
 #include "report/results.h"
 #include "scene/scene.h"
 
-#define KNOBS_MOST 32
+#define KNOBS_MOST 64
 
 typedef struct knob_setting {
     char name[COST_NAME]; /* "default", "radius 0.5", "photons 4250, buckets" */

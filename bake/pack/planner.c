@@ -2,6 +2,7 @@
 #include "common/pi.h"
 #include "common/fail.h"
 #include "pack/copies.h"
+#include "pack/indirect_maker.h"
 #include "common/strict_math.h"
 #include <math.h>
 #include <stdlib.h>
@@ -157,7 +158,7 @@ static uint64_t effects_of_basis(const scene *s, const tracks *t, const plan *p)
 
 /* What makes indirect light, and what any maker of it calls for. */
 static uint64_t effects_of_indirect(const scene *s, const tracks *t, const plan *p) {
-    uint64_t e = s->quality.indirect == INDIRECT_BASIS ? effects_of_basis(s, t, p) : effects_of_photons(s, p);
+    uint64_t e = p->indirect == INDIRECT_BASIS ? effects_of_basis(s, t, p) : effects_of_photons(s, p);
     if (e == 0)
         return 0;
     e |= VIT_BIT(INDIRECT);
@@ -270,11 +271,14 @@ static void plan_basis(const plan_input *in, plan *p) {
 }
 
 /* Effects that the scene calls for, then what `effects` of the scene file says of them. */
-static void plan_effects(const plan_input *in, plan *p) {
+static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
     const scene *s = in->scene;
     vit_scene *c = &p->scene;
-    c->effects =
-        effects_of_lights(s, in->tracks) | effects_of_materials(s, in->model, p) | effects_of_indirect(s, in->tracks, p);
+    c->effects = effects_of_lights(s, in->tracks) | effects_of_materials(s, in->model, p);
+    const vit_status status = indirect_maker_choose(in, p, why);
+    if (status != VIT_OK)
+        return status;
+    c->effects |= effects_of_indirect(s, in->tracks, p);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
     if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
@@ -298,6 +302,7 @@ static void plan_effects(const plan_input *in, plan *p) {
         effects_drop(c, VIT_BIT(PHOTONS) | VIT_BIT(BASIS));
     if (c->effects & VIT_BIT(BASIS))
         plan_basis(in, p);
+    return VIT_OK;
 }
 
 /* The photons' radius, as long as nobody has counted them. */
@@ -322,14 +327,14 @@ vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
     }
     plan_materials(in->model, in->atlas, out);
     plan_constants(in, &out->scene);
-    const vit_status status = plan_lights(in, out, why);
-    if (status != VIT_OK) {
+    vit_status status = plan_lights(in, out, why);
+    if (status == VIT_OK)
+        status = plan_effects(in, out, why);
+    if (status == VIT_OK)
+        plan_photons(in, out);
+    else
         plan_free(out);
-        return status;
-    }
-    plan_effects(in, out);
-    plan_photons(in, out);
-    return VIT_OK;
+    return status;
 }
 
 vit_status plan_share(const plan_input *in, const double *worth, plan *p, vit_text *why) {

@@ -10,6 +10,8 @@
 #include "light/sky.h"
 #include "motion/tracks.h"
 
+#define PLAN_WHY 160
+
 typedef struct plan {
     vit_scene scene;                 /* META but for slices and bounds, which bounds.c measures */
     vit_material *materials;         /* model.material_count records */
@@ -19,6 +21,8 @@ typedef struct plan {
     float sky_center[3], sky_radius; /* of a sphere round the scene, m */
     double lit_area;                 /* m2 of sides that light can reach */
     double free_path;                /* dark_sides.free_path, m */
+    int indirect;                    /* INDIRECT_* that makes indirect light, not AUTO */
+    char indirect_why[PLAN_WHY];     /* "auto": why that one; else empty */
     uint32_t reflections;            /* of baked indirect light, at most; 0: as many as there are */
     effects_decided effects;
 } plan;

@@ -1,5 +1,6 @@
 #include "radiosity/baked.h"
 #include "common/fail.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,6 +90,22 @@ static vit_status keep(const baked_input *in, const states *s, const float *irra
                            .threads = in->threads};
     out->receivers.count = padded;
     return basis_make(&b, &out->basis, why);
+}
+
+vit_status baked_foresee(const tracks *t, uint32_t frames, const uint32_t *moving, uint32_t moving_count, double size,
+                         baked_foreseen *out, vit_text *why) {
+    *out = (baked_foreseen){.states = 1};
+    for (uint32_t i = 0; i < moving_count; i++) {
+        basis_knots k;
+        const vit_status status = basis_knots_find(t, frames, moving[i], size, &k, why);
+        if (status != VIT_OK)
+            return status;
+        out->states += k.count;
+        out->widest = fmax(out->widest, k.widest);
+        basis_knots_free(&k);
+    }
+    out->bytes = 3.0 * sizeof(float) * MOST_RECEIVERS * out->states;
+    return VIT_OK;
 }
 
 vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {

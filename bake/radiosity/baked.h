@@ -36,6 +36,17 @@ typedef struct baked {
     transport_report report;
 } baked;
 
+/* What can be told beforehand. */
+typedef struct baked_foreseen {
+    uint32_t states; /* of the lights: those that stay together, and each other at its knots */
+    double bytes;    /* of all receivers' irradiance in all states, at most: what is compressed then */
+    double widest;   /* basis_knots.widest of any light */
+} baked_foreseen;
+
+/* Lights `moving` of the tracks; size: as baked_input's. VIT_FAILED: out of memory. */
+vit_status baked_foresee(const tracks *t, uint32_t frames, const uint32_t *moving, uint32_t moving_count, double size,
+                         baked_foreseen *out, vit_text *why);
+
 /* VIT_FAILED: out of memory. On failure there is nothing to free. */
 vit_status baked_find(const baked_input *in, baked *out, vit_text *why);
 void baked_free(baked *b);

@@ -58,6 +58,9 @@ vit_status basis_knots_find(const tracks *t, uint32_t frames, uint32_t light, do
             p->weight = to > from ? (float)((way[f] - from) / (to - from)) : 0.0f;
         }
     }
+    for (uint32_t k = 0; k + 1 < out->count; k++)
+        if (out->frame[k + 1] > out->frame[k] + 1)
+            out->widest = fmax(out->widest, (way[out->frame[k + 1]] - way[out->frame[k]]) / size);
     free(way);
     return VIT_OK;
 }

@@ -12,6 +12,7 @@ typedef struct basis_knots {
     uint32_t count;
     uint32_t *frame;        /* a knot: its frame, ascending */
     vit_basis_frame *place; /* a frame of the path: between which knots it is */
+    double widest;          /* way between neighbouring knots with frames in between, at most, of the scene's size */
 } basis_knots;
 
 /* Does the light differ from frame to frame by more than its power? Knots: 1 if not. size: of the scene, m. VIT_FAILED: out of

@@ -206,7 +206,7 @@ static const char *field_name(const void *list, int index) {
 }
 
 bool fields_read(const config_place *at, const config_setting_t *group, const config_field *fields, int count, void *out,
-                 uint32_t *seen) {
+                 uint64_t *seen) {
     *seen = 0;
     if (!config_setting_is_group(group))
         return fields_fail(at, group, "must be a group, { ... }");
@@ -222,7 +222,7 @@ bool fields_read(const config_place *at, const config_setting_t *group, const co
         }
         if (!read_field(at, s, &fields[k], out))
             return false;
-        *seen |= (uint32_t)1 << k;
+        *seen |= (uint64_t)1 << k;
     }
     return true;
 }

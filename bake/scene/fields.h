@@ -46,7 +46,7 @@ bool fields_fail(const config_place *at, const config_setting_t *setting, const 
 /* Reads every setting of `group` into `out`; what the group leaves out stays as it was.
  * seen: bit i is set if fields[i] was there. False: place.why says why. */
 bool fields_read(const config_place *at, const config_setting_t *group, const config_field *fields, int count, void *out,
-                 uint32_t *seen);
+                 uint64_t *seen);
 
 /* The setting as it stands in a group: "name = value; ". Numbers are the shortest that read back the same. Returns the bytes
  * written, fewer than `room`. For all kinds but texts and vectors. */

@@ -68,7 +68,7 @@ bool reader_allocate(reader *r, void *block, int count, size_t size) {
 
 static bool read_output(reader *r, const config_setting_t *root) {
     const config_setting_t *group = config_setting_get_member(root, "output");
-    uint32_t seen;
+    uint64_t seen;
     reader_at(r, "output", -1);
     return !group || fields_read(&r->at, group, output_fields, FIELD_COUNT(output_fields), r->s, &seen);
 }
@@ -77,7 +77,7 @@ static bool read_sky(reader *r, const config_setting_t *root) {
     const config_setting_t *group = config_setting_get_member(root, "sky");
     scene *s = r->s;
     scene_sky *sky = &s->sky;
-    uint32_t seen;
+    uint64_t seen;
     reader_at(r, "sky", -1);
     if (!group)
         return true;
@@ -95,10 +95,10 @@ static bool read_sky(reader *r, const config_setting_t *root) {
 
 /* Puts the group's settings over *q. *automatic and *kept: as in `scene`; may be NULL. */
 static bool merge_quality(const config_place *at, const config_setting_t *group, scene_quality *q, bool *automatic,
-                          uint32_t *kept) {
+                          uint64_t *kept) {
     quality_group g = {.q = *q};
     vit_text fault;
-    uint32_t seen = 0;
+    uint64_t seen = 0;
     if (!fields_read(at, group, quality_fields, FIELD_COUNT(quality_fields), &g, &seen))
         return false;
     if (g.automatic && !automatic)
@@ -108,7 +108,7 @@ static bool merge_quality(const config_place *at, const config_setting_t *group,
     if (!settings_agree(&g.q, &fault))
         return fields_fail(at, group, "%s", fault.text);
     if (kept)
-        *kept |= seen & (((uint32_t)1 << SETTINGS) - 1);
+        *kept |= seen & (((uint64_t)1 << SETTINGS) - 1);
     if (automatic)
         *automatic = g.automatic;
     *q = g.q;
@@ -194,7 +194,7 @@ static bool parse(const config_place *at, const char *missing, config_t *config)
 }
 
 static bool read_top(reader *r, const config_setting_t *root) {
-    uint32_t seen;
+    uint64_t seen;
     return fields_read(&r->at, root, top_fields, FIELD_COUNT(top_fields), r->s, &seen) && read_output(r, root) &&
            read_sky(r, root) && reader_meshes(r, root) && reader_camera(r, root) && reader_lights(r, root) &&
            reader_materials(r, root) && reader_effects(r, root) && read_quality(r, root);

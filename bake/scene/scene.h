@@ -101,7 +101,7 @@ typedef struct scene {
     int material_count;
     scene_quality quality;
     bool quality_auto;     /* the baker chooses what is not stated (auto.h) */
-    uint32_t quality_kept; /* SETTING_BIT()s: what is stated */
+    uint64_t quality_kept; /* SETTING_BIT()s: what is stated */
     int effects_choice;    /* EFFECTS_* */
     uint64_t effects;      /* EFFECTS_LISTED: VIT_BIT() of those named */
     inputs files;          /* the scene file, what it includes, and the files that it names */

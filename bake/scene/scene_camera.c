@@ -44,7 +44,7 @@ static double lean(const scene_camera_key *k) {
 static bool read_camera_key(reader *r, config_setting_t *list, int i) {
     scene *s = r->s;
     config_setting_t *group;
-    uint32_t seen;
+    uint64_t seen;
     scene_camera_key *key = &s->camera[i];
     reader_at(r, "camera key", i);
     *key = i ? s->camera[i - 1] : (scene_camera_key){.up = {0.0, 1.0, 0.0}, .fov = 60.0, .exposure = s->camera_exposure};
@@ -68,7 +68,7 @@ bool reader_camera(reader *r, const config_setting_t *root) {
     const config_setting_t *group = config_setting_get_member(root, "camera");
     camera_head head = {.exposure = 1.0};
     config_setting_t *list;
-    uint32_t seen;
+    uint64_t seen;
     r->at.what[0] = '\0';
     if (!group)
         return fields_fail(&r->at, root, "there is no 'camera'");

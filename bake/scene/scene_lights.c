@@ -31,7 +31,7 @@ static bool at_target(const scene_light_key *k) {
 
 /* What the keys of each kind of light hold, and what they must not hold. */
 static bool check_key(const config_place *at, const config_setting_t *group, const scene_light *light, bool first,
-                      uint32_t seen) {
+                      uint64_t seen) {
     const bool directional = light->kind == VIT_LIGHT_DIRECTIONAL, aimed = light->kind != VIT_LIGHT_POINT;
     const uint32_t strength = directional ? FIELD_BIT(LIGHT_IRRADIANCE) : FIELD_BIT(LIGHT_POWER);
     if (directional && (seen & FIELD_BIT(LIGHT_POWER)))
@@ -49,7 +49,7 @@ static bool check_key(const config_place *at, const config_setting_t *group, con
 
 static bool read_light_key(reader *r, scene_light *light, config_setting_t *list, int i) {
     config_setting_t *group;
-    uint32_t seen;
+    uint64_t seen;
     scene_light_key *key = &light->keys[i];
     if (i)
         *key = key[-1];
@@ -66,7 +66,7 @@ static bool read_light_key(reader *r, scene_light *light, config_setting_t *list
     return true;
 }
 
-static bool check_light(const config_place *at, const config_setting_t *group, const scene_light *light, uint32_t seen) {
+static bool check_light(const config_place *at, const config_setting_t *group, const scene_light *light, uint64_t seen) {
     const uint32_t cone = FIELD_BIT(LIGHT_INNER) | FIELD_BIT(LIGHT_OUTER);
     if (light->use[0] && (seen & (cone | FIELD_BIT(LIGHT_TYPE))))
         return fields_fail(at, group, "'use' already gives 'type', 'inner' and 'outer'");
@@ -85,7 +85,7 @@ static bool check_light(const config_place *at, const config_setting_t *group, c
 
 static bool read_light(reader *r, config_setting_t *lights, int i) {
     config_setting_t *group, *list;
-    uint32_t seen;
+    uint64_t seen;
     scene_light *light = &r->s->lights[i];
     reader_at(r, "light", i);
     *light = (scene_light){.outer = 45.0, .photons = true};

@@ -71,7 +71,7 @@ bool reader_meshes(reader *r, const config_setting_t *root) {
     for (int i = 0; i < count; i++) {
         config_setting_t *group;
         mesh_placement p = {.scale = {1.0, 1.0, 1.0}};
-        uint32_t seen;
+        uint64_t seen;
         reader_at(r, "mesh", i);
         if (!fields_group(&r->at, list, i, &group) ||
             !fields_read(&r->at, group, mesh_fields, FIELD_COUNT(mesh_fields), &p, &seen))
@@ -117,7 +117,7 @@ static const config_field material_fields[] = {
 };
 
 /* Settings that a material of the kind that it states has no use for. */
-static bool check_material(const config_place *at, const config_setting_t *group, const scene_material *m, uint32_t seen) {
+static bool check_material(const config_place *at, const config_setting_t *group, const scene_material *m, uint64_t seen) {
     static const struct {
         int setting;
         uint32_t kinds; /* a bit a kind that has it */
@@ -143,7 +143,7 @@ bool reader_materials(reader *r, const config_setting_t *root) {
         return false;
     for (int i = 0; i < count; i++) {
         scene_material *material = &r->s->materials[i];
-        uint32_t seen;
+        uint64_t seen;
         reader_at(r, "material", i);
         if (!fields_group(&r->at, list, i, &group) ||
             !fields_read(&r->at, group, material_fields, FIELD_COUNT(material_fields), material, &seen))

@@ -18,6 +18,11 @@ const scene_quality settings_default = {
 #undef SETTING
 };
 
+const char *settings_indirect_name(int maker) {
+    static const char *const names[] = {[INDIRECT_PHOTONS] = "photons", [INDIRECT_BASIS] = "basis", [INDIRECT_AUTO] = "auto"};
+    return names[maker];
+}
+
 bool settings_agree(const scene_quality *q, vit_text *why) {
     const char *fault = NULL;
     if (q->raw && !q->buckets)

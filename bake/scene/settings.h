@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
-enum { INDIRECT_PHOTONS, INDIRECT_BASIS };
+enum { INDIRECT_PHOTONS, INDIRECT_BASIS, INDIRECT_AUTO };
 
 typedef struct scene_quality {
 #define SETTING(type, member, ...) type member;
@@ -20,11 +20,13 @@ enum {
 #undef SETTING
     SETTINGS
 };
-#define SETTING_BIT(member) ((uint32_t)1 << SETTING_AT_##member)
-_Static_assert(SETTINGS < 32, "sets of settings, and fields_read()'s beside one more field, are 32 bits");
+#define SETTING_BIT(member) ((uint64_t)1 << SETTING_AT_##member)
+_Static_assert(SETTINGS < 64, "sets of settings, and fields_read()'s beside one more field, are 64 bits");
 
 extern const scene_quality settings_default;
 
+/* The word of INDIRECT_*. */
+const char *settings_indirect_name(int maker);
 /* What no single setting says. False: why->text is a sentence about it, "'light_zones' needs zones = true". */
 bool settings_agree(const scene_quality *q, vit_text *why);
 

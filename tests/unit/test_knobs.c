@@ -171,17 +171,24 @@ static void without_photons_nothing_is_a_multiple_of_them(void **state) {
     knobs_close(&l);
 }
 
-/* Settings of photons need photons; the sparse samples need indirect light, whatever makes it. */
+/* Settings of photons need photons, the sparse samples too, those of the basis need it. */
 static void knobs_of_indirect_light_need_what_they_turn(void **state) {
-    static const char only[] = "estimate,kernel,indirect_samples";
+    static const char only[] = "estimate,kernel,indirect_samples,receiver_rays";
     const uint64_t none = ~vit_effects_upon(VIT_BIT(INDIRECT)), other = none | VIT_BIT(INDIRECT);
     (void)state;
     knob_list l = make_for(none, &base, 0.8, only, 100);
     assert_int_equal(l.count, 1);
     knobs_close(&l);
     l = make_for(other, &base, 0.8, only, 100);
-    assert_int_equal(l.count, 3);
-    assert_string_equal(l.settings[1].knob, "indirect_samples");
+    assert_int_equal(l.count, 1);
+    knobs_close(&l);
+    l = make_for(other | VIT_BIT(PHOTONS), &base, 0.8, only, 100);
+    assert_string_equal(l.settings[1].knob, "estimate");
+    assert_int_equal(l.count, 3 * 2 * 3); /* combined, too */
+    knobs_close(&l);
+    l = make_for(other | VIT_BIT(BASIS), &base, 0.8, only, 100);
+    assert_int_equal(l.count, 1 + 2);
+    assert_string_equal(l.settings[1].knob, "receiver_rays");
     knobs_close(&l);
 }
 
