@@ -91,6 +91,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
         status = check_against_inputs(b, why);
     if (status == VIT_OK)
         status = exposure_settle(p, why);
+    if (status == VIT_OK)
+        status = pipeline_settle_indirect(p, why);
     if (status != VIT_OK)
         return status;
     const fit_budget budget = {.ms = b->options.fit, .work = (uint64_t)b->options.fit_work};
@@ -104,9 +106,9 @@ static vit_status make_pack(bake *b, vit_text *why) {
         status = pipeline_pack(p, &asked, &b->packed, why);
     if (status != VIT_OK)
         return status;
-    if (b->packed.plan.indirect_why[0])
-        progress_line(&b->progress, false, "indirect = \"auto\": %s, since %s", settings_indirect_name(b->packed.plan.indirect),
-                      b->packed.plan.indirect_why);
+    if (p->indirect_why[0])
+        progress_line(&b->progress, false, "indirect = \"auto\": %s, since %s",
+                      settings_indirect_name(p->scene.quality.indirect), p->indirect_why);
     if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     warn_of_missed_effects(b);
@@ -133,13 +135,14 @@ static void explain_effects(const pipeline_packed *p, const effect_costs *all) {
 }
 
 /* Which method, and why where the baker has chosen it. */
-static void explain_indirect(const pipeline_packed *p) {
-    const vit_scene *s = &p->plan.scene;
-    if (p->plan.indirect_why[0])
-        printf("  indirect = \"auto\": %s, since %s\n", settings_indirect_name(p->plan.indirect), p->plan.indirect_why);
+static void explain_indirect(const bake *b) {
+    const pipeline *p = &b->pipeline;
+    const vit_scene *s = &b->packed.plan.scene;
+    if (p->indirect_why[0])
+        printf("  indirect = \"auto\": %s, since %s\n", settings_indirect_name(p->scene.quality.indirect), p->indirect_why);
     if (s->effects & VIT_BIT(BASIS))
-        printf("  indirect light by the basis: %u receivers, %u lights that move, at most %u reflections\n", s->receivers,
-               s->basis_lights, p->plan.reflections);
+        printf("  indirect light by the basis: %u receivers, %u lights that move, %u bounces%s\n", s->receivers,
+               s->basis_lights, s->bounces, s->bounces < PLAN_ALL_BOUNCES ? "" : " and more");
 }
 
 static vit_status explain(bake *b, vit_text *why) {
@@ -167,7 +170,7 @@ static vit_status explain(bake *b, vit_text *why) {
            b->packed.dark_sides->dark_front + b->packed.dark_sides->dark_back);
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height,
            100 * p->atlas.occupancy);
-    explain_indirect(&b->packed);
+    explain_indirect(b);
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  indirect light by photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked,
                s->bounces, (double)s->radius);

@@ -11,6 +11,7 @@
 #define MOST_SAMPLES 256
 #define MOST_PHOTONS 960000.0
 #define AUTO_GAIN 4.0 /* so many times as many paths where they are worth something are worth guiding */
+#define FINER 2       /* times that the distance of receivers is halved */
 #define FAR_OFF 0.2   /* so far from right, a step of one rung is not worth its time */
 
 /* A rung: factors on the automatic radius and on the default number of paths. */
@@ -31,11 +32,12 @@ typedef struct search {
     pipeline *p;
     progress *loud; /* says what is tried; the pipeline's own shows no more than its stages */
     auto_found *out;
-    scene_quality base;  /* defaults and what is kept */
-    double radius;       /* that is automatic with the base, m; 0: there are no photons */
-    bool photons;        /* the scene has indirect light */
-    scene_quality first; /* of the plainest pack, */
-    check_found found;   /* what that has, and from then on the parts that direct light has in what was found last */
+    scene_quality base;   /* defaults and what is kept */
+    scene_quality stated; /* the same, to begin anew */
+    double radius;        /* that is automatic with the base, m; 0: there are no photons */
+    bool photons;         /* the scene has indirect light */
+    scene_quality first;  /* of the plainest pack, */
+    check_found found;    /* what that has, and from then on the parts that direct light has in what was found last */
 } search;
 
 static bool kept(const search *s, uint64_t setting) {
@@ -71,6 +73,11 @@ static vit_status measure(const search *s, const scene_quality *q, bool parts, c
     if (status == VIT_OK)
         say_tried(s, q, found);
     return status;
+}
+
+/* Is it the basis, by the baker's own choice? */
+static bool may_fall_back(const search *s) {
+    return s->base.indirect == INDIRECT_BASIS && s->p->indirect_why[0];
 }
 
 /* As many bounces as leave hardly any light out. */
@@ -120,13 +127,17 @@ static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
     return pack(s, &s->base, out, why);
 }
 
-/* The reference, and what follows from it and from the plainest pack. */
+/* The reference, if it is not there yet, and what follows from it and from the plainest pack. */
 static vit_status begin(search *s, vit_text *why) {
     pipeline_packed packed;
-    vit_status status = pack_guided(s, &packed, why);
+    const bool by_basis = s->base.indirect == INDIRECT_BASIS;
+    if (by_basis && !kept(s, SETTING_BIT(bounces)))
+        s->base.bounces = PLAN_ALL_BOUNCES;
+    vit_status status = by_basis ? pack(s, &s->base, &packed, why) : pack_guided(s, &packed, why);
     if (status != VIT_OK)
         return status;
-    status = check_trace(s->p, &packed, &s->out->check, why);
+    if (s->out->check.paths == 0)
+        status = check_trace(s->p, &packed, &s->out->check, why);
     if (status == VIT_OK)
         status = check_compare(s->p, &packed, &s->out->check, true, &s->found, why);
     if (status == VIT_OK)
@@ -201,8 +212,54 @@ static vit_status climb(search *s, vit_text *why) {
     return VIT_OK;
 }
 
+/* The basis as it is; with receivers closer to each other if it is off. */
+static vit_status refine_basis(search *s, vit_text *why) {
+    for (int i = 0; i < FINER && s->found.worst > CHECK_LIMIT && !kept(s, SETTING_BIT(receiver_spacing)); i++) {
+        scene_quality q = s->base;
+        check_found found;
+        q.receiver_spacing = fmax(q.receiver_spacing / 2, 1);
+        const vit_status status = measure(s, &q, true, &found, why);
+        if (status != VIT_OK || distance(&found) > distance(&s->found))
+            return status;
+        s->base = q;
+        s->found = found;
+    }
+    return VIT_OK;
+}
+
+/* The basis is right, or photons have to show that they are nearer to it. */
+static vit_status take_basis(search *s, vit_text *why) {
+    auto_found *a = s->out;
+    vit_status status = refine_basis(s, why);
+    a->found = s->found;
+    a->right = distance(&s->found) <= AUTO_LIMIT;
+    s->p->scene.quality = s->base;
+    if (status != VIT_OK || a->found.worst <= CHECK_LIMIT || !may_fall_back(s))
+        return status;
+    const scene_quality of_basis = s->base;
+    const auto_found with_basis = *a;
+    char had[128], has[128];
+    s->base = s->stated;
+    s->base.indirect = INDIRECT_PHOTONS;
+    status = begin(s, why);
+    if (status == VIT_OK)
+        status = climb(s, why);
+    if (status != VIT_OK)
+        return status;
+    if (distance(&a->found) < distance(&with_basis.found)) {
+        check_text(&with_basis.found, had, sizeof had);
+        check_text(&a->found, has, sizeof has);
+        (void)snprintf(s->p->indirect_why, sizeof s->p->indirect_why, "the basis has %s of path tracing's, photons %s", had,
+                       has);
+        return VIT_OK;
+    }
+    a->found = with_basis.found;
+    s->p->scene.quality = of_basis;
+    return VIT_OK;
+}
+
 vit_status auto_choose(pipeline *p, auto_found *out, vit_text *why) {
-    search s = {.p = p, .loud = p->progress, .out = out, .base = p->scene.quality};
+    search s = {.p = p, .loud = p->progress, .out = out, .base = p->scene.quality, .stated = p->scene.quality};
     progress *const loud = p->progress;
     progress within = progress_within(loud);
     memset(out, 0, sizeof *out);
@@ -211,7 +268,7 @@ vit_status auto_choose(pipeline *p, auto_found *out, vit_text *why) {
     p->progress = &within;
     vit_status status = begin(&s, why);
     if (status == VIT_OK)
-        status = climb(&s, why);
+        status = s.base.indirect == INDIRECT_BASIS ? take_basis(&s, why) : climb(&s, why);
     progress_end(&within);
     p->progress = loud;
     progress_end(loud);

@@ -25,11 +25,13 @@ void check_cure(const check_found *f, const scene_quality *q, const plan *p, cha
                                                      : "light_samples and sky_samples");
     else if (!indirect)
         (void)snprintf(text, room, q->photons > 0 && q->bounces > 1 ? "" : "photons and bounces beyond 1 give indirect light");
-    else if (!photons) /* what follows are their settings */
-        return;
     else if (f->limited < 1 - CHECK_LIMIT / 2 && f->indirect < 1)
         (void)snprintf(text, room, "bounces = %d leaves %.0f %% of the light out: raise it", q->bounces,
                        100 * (1 - f->limited));
+    else if (!photons)
+        (void)snprintf(text, room,
+                       "indirect = \"photons\", or a smaller receiver_spacing than %g with more receiver_rays than %d",
+                       q->receiver_spacing, q->receiver_rays);
     else if (!q->zones || !q->effective_area)
         (void)snprintf(text, room, "%s%s%s%s", !q->zones ? "zones = true" : "", !q->zones && !q->effective_area ? " and " : "",
                        !q->effective_area ? "effective_area = true" : "", " of the quality block keep light where it belongs");

@@ -66,7 +66,8 @@ static bool look_at_lights(looking *w, const plan *p) {
         const uint32_t count = t->still[i] ? 1 : most;
         for (uint32_t k = 0; k < count && fine; k++) {
             const uint32_t frame = (2 * k + 1) * frames / (2 * count);
-            fine = look(w, (photons_light){.light = t->lights[(size_t)frame * t->light_count + i]}, paths_of(w->in, p, i), count);
+            fine =
+                look(w, (photons_light){.light = t->lights[(size_t)frame * t->light_count + i]}, paths_of(w->in, p, i), count);
         }
     }
     return fine;
@@ -80,13 +81,13 @@ static vit_status caustic_part(const plan_input *in, const plan *p, double *part
     if (!s->quality.caustics || !(e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))))
         return VIT_OK;
     const photon_scene lit = {.triangles = in->geometry->triangles,
-                                .attributes = in->geometry->attributes,
-                                .triangle_count = in->model->triangles,
-                                .materials = p->materials,
-                                .atlas = in->atlas,
-                                .ray_offset = p->scene.ray_offset,
-                                .box_pad = p->scene.box_pad,
-                                .effects = e};
+                              .attributes = in->geometry->attributes,
+                              .triangle_count = in->model->triangles,
+                              .materials = p->materials,
+                              .atlas = in->atlas,
+                              .ray_offset = p->scene.ray_offset,
+                              .box_pad = p->scene.box_pad,
+                              .effects = e};
     photon_rays rays;
     if (!photon_rays_open(&lit, in->threads, &rays))
         return bake_fail(why, VIT_FAILED, "indirect light: Embree fails");
@@ -131,8 +132,8 @@ vit_status indirect_maker_choose(const plan_input *in, plan *p, vit_text *why) {
     if (part > MAKER_CAUSTICS)
         take(p, INDIRECT_PHOTONS, "%s, which the basis has not; it may be %g %%", caustics, 100 * MAKER_CAUSTICS);
     else if (f.widest > MAKER_WIDEST)
-        take(p, INDIRECT_PHOTONS, "a light goes %.2g of the scene's size between two places of the basis; it may be %g", f.widest,
-             MAKER_WIDEST);
+        take(p, INDIRECT_PHOTONS, "a light goes %.2g of the scene's size between two places of the basis; it may be %g",
+             f.widest, MAKER_WIDEST);
     else if (f.bytes > q->basis_bytes)
         take(p, INDIRECT_PHOTONS, "irradiance in %u state%s of the lights may take %.3g bytes; basis_bytes = %.3g", f.states,
              f.states == 1 ? "" : "s", f.bytes, q->basis_bytes);

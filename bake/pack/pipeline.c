@@ -56,7 +56,8 @@ vit_status pipeline_read(const char *path, scene *out, vit_text *why) {
 
 vit_status pipeline_load(pipeline *p, vit_text *why) {
     p->kept = calloc(1, sizeof *p->kept);
-    vit_status status = p->kept ? VIT_OK : out_of_memory(why);
+    p->kept_baked = calloc(1, sizeof *p->kept_baked);
+    vit_status status = p->kept && p->kept_baked ? VIT_OK : out_of_memory(why);
     for (size_t i = 0; i < sizeof scene_stages / sizeof *scene_stages && status == VIT_OK; i++)
         status = scene_stages[i](p, why);
     return status;
@@ -66,6 +67,9 @@ void pipeline_free(pipeline *p) {
     if (p->kept)
         zones_kept_free(p->kept);
     free(p->kept);
+    if (p->kept_baked)
+        baked_kept_free(p->kept_baked);
+    free(p->kept_baked);
     photon_guiding_free(&p->guided.guiding);
     sky_free(&p->sky);
     atlas_free(&p->atlas);
@@ -78,6 +82,25 @@ void pipeline_free(pipeline *p) {
 
 pipeline_choice pipeline_default(const pipeline *p) {
     return (pipeline_choice){.quality = p->scene.quality, .width = p->scene.width, .height = p->scene.height};
+}
+
+vit_status pipeline_settle_indirect(pipeline *p, vit_text *why) {
+    const pipeline_choice choice = pipeline_default(p);
+    pipeline_packed packed = {0};
+    bake b = {.p = p, .choice = &choice, .scene = p->scene, .out = &packed};
+    if (p->scene.quality.indirect != INDIRECT_AUTO)
+        return VIT_OK;
+    vit_status status = tracks_evaluate(&b.scene, &p->model, &packed.tracks, why);
+    if (status == VIT_OK)
+        status = stage_choose_shape(&b, why);
+    if (status == VIT_OK)
+        status = stage_plan(&b, why);
+    if (status == VIT_OK && packed.plan.scene.effects & VIT_BIT(INDIRECT)) {
+        p->scene.quality.indirect = packed.plan.indirect;
+        memcpy(p->indirect_why, packed.plan.indirect_why, sizeof p->indirect_why);
+    }
+    pipeline_packed_free(&packed);
+    return status;
 }
 
 vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_packed *out, vit_text *why) {

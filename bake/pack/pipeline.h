@@ -8,7 +8,7 @@
 #include "light/photon_guiding.h"
 #include "pack/pack_write.h"
 #include "pack/planner.h"
-#include "radiosity/baked.h"
+#include "radiosity/kept.h"
 #include "common/progress.h"
 #include "geometry/quantise.h"
 #include "dark_sides/dark_sides.h"
@@ -40,7 +40,9 @@ typedef struct pipeline {
     atlas atlas;
     environment sky;
     zones_kept *kept;
-    pipeline_guiding guided; /* of the last pack that guides photons */
+    baked_kept *kept_baked;
+    pipeline_guiding guided;     /* of the last pack that guides photons */
+    char indirect_why[PLAN_WHY]; /* why scene.quality.indirect is what it is; empty: it is stated */
 } pipeline;
 
 typedef struct pipeline_choice {
@@ -86,6 +88,9 @@ typedef struct pipeline_packed {
 vit_status pipeline_read(const char *path, scene *out, vit_text *why);
 vit_status pipeline_load(pipeline *p, vit_text *why);
 void pipeline_free(pipeline *p);
+
+/* Puts who makes indirect light instead of "auto" into scene.quality, where there is any (indirect_maker.h), and says why. */
+vit_status pipeline_settle_indirect(pipeline *p, vit_text *why);
 
 /* What the scene itself says. */
 pipeline_choice pipeline_default(const pipeline *p);

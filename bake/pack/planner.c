@@ -4,6 +4,7 @@
 #include "pack/copies.h"
 #include "pack/indirect_maker.h"
 #include "common/strict_math.h"
+#include "radiosity/transport.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -267,7 +268,8 @@ static void plan_basis(const plan_input *in, plan *p) {
     for (size_t i = 0; i < (size_t)in->scene->frames * lights; i++)
         in->tracks->lights[i].path_first = in->tracks->lights[i].path_count = 0;
     p->scene.paths = 0;
-    p->reflections = (uint32_t)in->scene->quality.bounces - 1u;
+    const uint32_t bounces = (uint32_t)in->scene->quality.bounces;
+    p->reflections = bounces < PLAN_ALL_BOUNCES ? bounces - 1u : TRANSPORT_CONVERGED;
 }
 
 /* Effects that the scene calls for, then what `effects` of the scene file says of them. */

@@ -10,7 +10,9 @@
 #include "light/sky.h"
 #include "motion/tracks.h"
 
-#define PLAN_WHY 160
+#define PLAN_WHY 320
+#define PLAN_ALL_BOUNCES                                                                                                       \
+    32u /* quality.bounces that stands for all reflections where light is baked: they cost next to nothing */
 
 typedef struct plan {
     vit_scene scene;                 /* META but for slices and bounds, which bounds.c measures */

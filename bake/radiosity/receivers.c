@@ -464,6 +464,7 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
         bake_fail(why, VIT_FAILED, "receivers: out of memory");
     if (status == VIT_OK) {
         drop_dark(&p);
+        out->side_count = 2 * in->rays->s->triangle_count;
         p.cells.sides = NULL;
     }
     free(p.spacing);

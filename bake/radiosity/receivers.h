@@ -31,7 +31,7 @@ typedef struct receivers {
     vit_receiver_cell *cells;   /* section RCEL */
     vit_receiver_split *splits; /* section RSPL */
     receiver *receivers;        /* ordered so that neighbours in space are near each other in the list */
-    uint32_t cell_count, split_count, count;
+    uint32_t side_count, cell_count, split_count, count;
     uint32_t seen_sides; /* of triangles, by the path's cameras */
     uint32_t lit_sides;  /* that light can reach, of matt materials */
 } receivers;

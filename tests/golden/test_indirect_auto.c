@@ -1,6 +1,7 @@
-/* Who makes indirect light where the scene leaves it to the baker (indirect = "auto"). Each rule is met by a room of its own, and
- * the figure that the baker decided by is one that is known: of a lamp in the middle of a cube a sixth of the light goes to each
- * side, so that a floor which is a mirror sends so much on. What is asked for is made, whatever the rules say. */
+/* Who makes indirect light where the scene leaves it to the baker (indirect = "auto"). Each rule is met by a room of its own,
+ * and the figure that the baker decided by is one that is known: of a lamp in the middle of a cube a sixth of the light goes to
+ * each side, so that a floor which is a mirror sends so much on. What is asked for is made, whatever the rules say;
+ * and where the baker's look at its picture finds the basis wrong and photons less so, photons are taken after all. */
 #include "scene_lab.h"
 #include <math.h>
 
@@ -89,8 +90,8 @@ static void lights_that_move_are_baked_as_long_as_knots_suffice(void **state) {
     bake(*state, "--indirect auto");
     chosen(*state, "basis", line);
     for (int i = 0; i < 80; i++) /* to and fro, every frame elsewhere */
-        used += (size_t)snprintf(keys + used, sizeof keys - used, "%s{ time = %d.0; position = [%.1f, %.3f, 0.0]; %s}", i ? ", " : "", i,
-                                 i % 2 ? 0.8 : -0.8, i / 100.0, i ? "" : "power = [10.0, 10.0, 10.0]; ");
+        used += (size_t)snprintf(keys + used, sizeof keys - used, "%s{ time = %d.0; position = [%.1f, %.3f, 0.0]; %s}",
+                                 i ? ", " : "", i, i % 2 ? 0.8 : -0.8, i / 100.0, i ? "" : "power = [10.0, 10.0, 10.0]; ");
     write_scene(*state, "", 80, keys, "");
     bake(*state, "--indirect auto");
     chosen(*state, "photons", line);
@@ -121,6 +122,61 @@ static void what_is_asked_for_is_made(void **state) {
     }
 }
 
+/* The line that quality "auto" ends with. */
+static void quality_said(scene_lab *l, char line[1024]) {
+    FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
+    assert_non_null(f);
+    do
+        if (!fgets(line, 1024, f))
+            fail_msg("nothing is said of the quality");
+    while (!strstr(line, "quality \"auto\": "));
+    (void)fclose(f);
+}
+
+static void bake_checked(scene_lab *l, const char *pack, const char *options) {
+    char line[1024];
+    (void)snprintf(line, sizeof line, "%s -o %s --device host %s", scene_lab_path(l, "scene.cfg"), scene_lab_path(l, pack),
+                   options);
+    scene_lab_run(l, "vitrine-bake", line);
+}
+
+/* With quality "auto" all reflections count, receivers come closer until the picture is right, and the pack has the light that
+ * the check has looked at: its bytes are those of the same settings stated. */
+static void a_basis_is_refined_until_it_is_right(void **state) {
+    char line[1024];
+    size_t sizes[2];
+    scene_lab *l = *state;
+    write_scene(l, "", 2, STILL, "quality: { auto = true; receiver_rays = 64; };\n");
+    bake_checked(l, "scene.vit", "--indirect auto");
+    quality_said(l, line);
+    if (!strstr(line, "{ indirect = \"basis\"; receiver_spacing = 6; bounces = 32; }, of 2 tried the cheapest that is right"))
+        fail_msg("%s", line);
+    bake_checked(l, "stated.vit", "--quality stated --no-check --indirect basis --receiver-spacing 6 --bounces 32 --threads 1");
+    void *chosen_bytes = read_file(scene_lab_path(l, "scene.vit"), sizes),
+         *stated_bytes = read_file(scene_lab_path(l, "stated.vit"), sizes + 1);
+    assert_int_equal(sizes[0], sizes[1]);
+    assert_memory_equal(chosen_bytes, stated_bytes, sizes[0]);
+    free(chosen_bytes);
+    free(stated_bytes);
+}
+
+/* Receivers in the room's corners alone cannot tell a lamp's light on a wall; photons can. What is stated stays. */
+static void a_basis_that_is_wrong_gives_way_to_photons(void **state) {
+    static const char near_a_wall[] = "{ position = [0.0, 0.9, 0.2]; power = [10.0, 10.0, 10.0]; }";
+    char line[1024];
+    scene_lab *l = *state;
+    write_scene(l, "", 1, near_a_wall, "quality: { auto = true; receiver_rays = 16; receiver_spacing = 256.0; };\n");
+    bake_checked(l, "scene.vit", "--indirect auto");
+    assert_true(scene_lab_said(l, "indirect = \"auto\": photons, since the basis has flux 0."));
+    quality_said(l, line);
+    assert_null(strstr(line, "basis"));
+    bake_checked(l, "scene.vit", "--indirect basis");
+    quality_said(l, line);
+    assert_non_null(strstr(line, "warning"));
+    assert_non_null(strstr(line, "indirect = \"basis\""));
+    assert_non_null(strstr(line, "a smaller receiver_spacing than 256"));
+}
+
 static int set_up(void **state) {
     static const int side[6][4] = {{1, 2, 4, 3}, {5, 7, 8, 6}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}, {1, 5, 6, 2}};
     scene_lab_set_up(state);
@@ -144,6 +200,8 @@ int main(void) {
         cmocka_unit_test(lights_that_move_are_baked_as_long_as_knots_suffice),
         cmocka_unit_test(irradiance_has_a_bound_in_bytes),
         cmocka_unit_test(what_is_asked_for_is_made),
+        cmocka_unit_test(a_basis_is_refined_until_it_is_right),
+        cmocka_unit_test(a_basis_that_is_wrong_gives_way_to_photons),
     };
     return cmocka_run_group_tests(tests, set_up, scene_lab_tear_down);
 }
