@@ -164,6 +164,7 @@ static bool aim_all(aiming *a, transport *t) {
         parallel_for(t->in->threads, count, aim_row, a);
         t->report->rays += (uint64_t)count * a->rays;
         fine = append(&rows, a, count);
+        transport_step(t, TRANSPORT_LIT, 1.0, (double)(a->first + count) / t->in->receiver_count);
     }
     if (fine) {
         transport_drop_rows(&t->gathers);

@@ -21,6 +21,7 @@ typedef struct lighting {
     float *weight;    /* a number: how much of its light receivers get, summed */
     double *variance; /* a number: of one sample, all columns added up */
     uint32_t *more;   /* a number: further samples */
+    bool again;       /* these are taken */
 } lighting;
 
 typedef struct spot {
@@ -184,6 +185,11 @@ static bool share_out(lighting *l) {
     return fine;
 }
 
+static void lighting_step(void *user, double fraction) {
+    const lighting *l = user;
+    transport_step(l->t, TRANSPORT_BOUNCED, TRANSPORT_LIT, ((l->again ? 1.0 : 0.0) + fraction) / 2);
+}
+
 bool transport_direct(transport *t, float *radiosity) {
     lighting l = {.t = t, .radiosity = radiosity};
     l.weight = calloc(t->count + 1u, sizeof *l.weight);
@@ -191,11 +197,13 @@ bool transport_direct(transport *t, float *radiosity) {
     l.more = calloc(t->count + 1u, sizeof *l.more);
     bool fine = l.weight && l.variance && l.more;
     if (fine) {
-        const parallel_work first = {.run = light_cell, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads},
-                            second = {.run = light_more, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads};
-        parallel_run(&first, &t->report->light_rays);
+        parallel_work work = {
+            .run = light_cell, .done = lighting_step, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads};
+        parallel_run(&work, &t->report->light_rays);
         fine = share_out(&l);
-        parallel_run(&second, &t->report->light_rays);
+        work.run = light_more;
+        l.again = true;
+        parallel_run(&work, &t->report->light_rays);
     }
     free(l.weight);
     free(l.variance);

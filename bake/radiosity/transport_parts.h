@@ -40,6 +40,17 @@ typedef struct transport {
     uint32_t columns;        /* 3 per state */
 } transport;
 
+/* Parts of the time, about: rays of receivers, of cells, looks at lights, and rays at bright cells. */
+#define TRANSPORT_GATHERED 0.5
+#define TRANSPORT_BOUNCED 0.65
+#define TRANSPORT_LIT 0.85
+
+/* Says that a part is done by `fraction`. */
+static inline void transport_step(const transport *t, double from, double to, double fraction) {
+    if (t->in->progress)
+        t->in->progress(t->in->user, from + (to - from) * fraction);
+}
+
 /* transport_rows.c: cells, and who sees which. */
 bool transport_divide(transport *t, vit_text *why);
 bool transport_gather(transport *t);

@@ -286,7 +286,8 @@ static bool note_row(transport *t, transport_rows *rows, const found *hits, uint
     return true;
 }
 
-static bool shoot(transport *t, const uint32_t *row_rays, uint32_t first, uint32_t end, bool known) {
+/* part: of the cells' time that is left. */
+static bool shoot(transport *t, const uint32_t *row_rays, uint32_t first, uint32_t end, bool known, double part) {
     uint32_t rays = t->in->receiver_rays;
     for (uint32_t i = first; row_rays && i < end; i++)
         rays = i == first || row_rays[i] > rays ? row_rays[i] : rays;
@@ -304,8 +305,10 @@ static bool shoot(transport *t, const uint32_t *row_rays, uint32_t first, uint32
             t->report->rays += of_row;
             fine = note_row(t, row_rays ? &t->bounces : &t->gathers, s.hits + (size_t)i * rays, of_row, known);
         }
-        if (t->in->progress && !row_rays)
-            t->in->progress(t->in->user, 0.6 * (double)(s.first + count) / end);
+        /* Cells of later generations are not known yet: each takes half of what is left. */
+        const double done = (double)(s.first + count - first) / (end - first),
+                     begun = row_rays ? TRANSPORT_BOUNCED - (TRANSPORT_BOUNCED - TRANSPORT_GATHERED) * part : 0.0;
+        transport_step(t, begun, row_rays ? (begun + TRANSPORT_BOUNCED) / 2 : TRANSPORT_GATHERED, done);
     }
     free(s.hits);
     return fine;
@@ -342,12 +345,14 @@ void transport_drop_rows(transport_rows *r) {
 
 bool transport_gather(transport *t) {
     bool fine = transport_make_room(&t->gathers, 0, 1) && transport_make_room(&t->bounces, 0, 1) &&
-                shoot(t, NULL, 0, t->in->receiver_count, false);
+                shoot(t, NULL, 0, t->in->receiver_count, false, 1.0);
     uint32_t begin = 0;
+    double part = 1.0;
     for (uint32_t g = 0; g < GENERATIONS && fine && t->in->reflections != 1u; g++) {
         const uint32_t end = t->count;
         uint32_t *rays = share_rays(t, begin);
-        fine = rays && shoot(t, rays, begin, end, g + 1 == GENERATIONS);
+        fine = rays && shoot(t, rays, begin, end, g + 1 == GENERATIONS, part);
+        part /= 2;
         free(rays);
         begin = end;
     }
