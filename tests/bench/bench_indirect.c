@@ -1,5 +1,6 @@
 /* How right indirect light is where nobody tuned: scenes that no constant of the baker was chosen on, by the methods and at the
- * settings that a user gets who says nothing, against path tracing.
+ * settings that a user gets who says nothing, against path tracing; and how still it is where nothing moves
+ * (indirect_motion.h).
  *
  * Each method's pack is baked by vitrine-bake without its check, played on the device host, and compared with the reference:
  * its indirect light with that of all reflections, and of as many as the default of `bounces` lets photons have; the whole
@@ -8,21 +9,10 @@
  *
  * bench_indirect [SCENE...]; METHODS="basis photons basis+receiver-rays=2048" says which methods, `+` before each further
  * option of the baker; WORST=3: how many bad pixels are printed. */
-#include "indirect_truth.h"
-#include "../pack_sections.h"
-#include "variant.h"
+#include "indirect_motion.h"
 
-#include "cost/images.h"
-#include <sys/resource.h>
-
-enum { METHODS_MOST = 8, OPTIONS_MOST = 15 };
-
-typedef struct method {
-    const char *name;                     /* as METHODS has it */
-    double cpu;                           /* seconds of the bake */
-    size_t bytes;                         /* of the pack */
-    float *light, *picture, *every_pixel; /* indirect, all light on the reference's grid; indirect */
-} method;
+/* Of the pixels along an edge, one in so many has the reference. */
+enum { STILL_EVERY = 2, MOTION_EVERY = 4 };
 
 typedef struct trial {
     const untuned_scene *scene;
@@ -30,46 +20,18 @@ typedef struct trial {
     method methods[METHODS_MOST];
     size_t count;
     truth truth;
+    uint32_t every;
+    csv *csv;
 } trial;
 
-static double children_seconds(void) {
-    struct rusage u;
-    getrusage(RUSAGE_CHILDREN, &u);
-    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+static void put_row(const trial *t, const method *m, const char *what, double value, const char *unit) {
+    char of[128];
+    const series s = series_exact(value);
+    snprintf(of, sizeof of, "%s: %s", m->name, what);
+    csv_row(t->csv, t->scene->name, t->size, of, &s, unit);
 }
 
-/* Bakes the scene's pack by the method: `--indirect NAME`, and an option for each +NAME=VALUE. */
-static pack_image bake(const untuned_scene *s, method *m) {
-    char scene[BENCH_PATH], pack[BENCH_PATH], words[256], options[OPTIONS_MOST][64], baker[] = VIT_BUILD_DIR "/vitrine-bake";
-    char to[] = "-o", quiet[] = "--quiet", no_check[] = "--no-check", indirect[] = "--indirect", *rest = NULL, *word;
-    untuned_path(scene, s->name, ".cfg");
-    untuned_path(pack, s->name, ".vit");
-    snprintf(words, sizeof words, "%s", m->name);
-    char *argv[OPTIONS_MOST + 9] = {baker, scene, to, pack, quiet, no_check, indirect, strtok_r(words, "+", &rest)};
-    for (size_t i = 0; (word = strtok_r(NULL, "+", &rest)) != NULL; i++) {
-        if (i == OPTIONS_MOST)
-            bench_fail("METHODS: too many options: %s", m->name);
-        snprintf(options[i], sizeof options[i], "--%.60s", word);
-        argv[8 + i] = options[i];
-    }
-    const double before = children_seconds();
-    child_run(argv, NULL, false);
-    m->cpu = children_seconds() - before;
-    const pack_image image = image_load(pack);
-    m->bytes = image.size;
-    return image;
-}
-
-static float *play(const pack_image *pack, vit_view view, uint32_t frame, const images_grid *g) {
-    const vit_open_info how = {.pack = pack->bytes, .pack_size = pack->size, .device = VIT_DEVICE_HOST, .view = view};
-    float *out = bench_array((size_t)images_across(g) * images_down(g) * 3, sizeof *out);
-    vit_text why;
-    if (images_render(&how, frame, g, out, NULL, &why) != VIT_OK)
-        bench_fail("%s", why.text);
-    return out;
-}
-
-static void print_verdict(csv *c, const trial *t, const method *m, int part) {
+static void print_verdict(const trial *t, const method *m, int part) {
     static const char *const kinds[TRUTH_PARTS] = {"all", "as", "sum"}, *const of[TRUTH_PARTS] = {
                                                                             "indirect light",
                                                                             "indirect light, as many reflections", "all light"};
@@ -87,24 +49,19 @@ static void print_verdict(csv *c, const trial *t, const method *m, int part) {
         printf(" %8.2f %8.3f", m->cpu, (double)m->bytes * 1e-6);
     printf("\n");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char what[128];
-        const series s = series_exact(rows[i].value);
-        snprintf(what, sizeof what, "%s: %s: %s", m->name, of[part], rows[i].what);
-        csv_row(c, t->scene->name, t->size, what, &s, "1");
+        char what[96];
+        snprintf(what, sizeof what, "%s: %s", of[part], rows[i].what);
+        put_row(t, m, what, rows[i].value, "1");
     }
 }
 
-static void print_method(csv *c, const trial *t, const method *m) {
+static void print_method(const trial *t, const method *m) {
     const char *worst = getenv("WORST");
-    char what[128];
     for (int part = 0; part < TRUTH_PARTS; part++)
-        print_verdict(c, t, m, part);
-    truth_print_worst(&t->truth, m->light, t->scene->every, worst ? atoi(worst) : 3);
-    const series cpu = series_exact(m->cpu), bytes = series_exact((double)m->bytes);
-    snprintf(what, sizeof what, "%s: bake, CPU", m->name);
-    csv_row(c, t->scene->name, t->size, what, &cpu, "s");
-    snprintf(what, sizeof what, "%s: pack", m->name);
-    csv_row(c, t->scene->name, t->size, what, &bytes, "B");
+        print_verdict(t, m, part);
+    truth_print_worst(&t->truth, m->light, t->every, worst ? atoi(worst) : 3);
+    put_row(t, m, "bake, CPU", m->cpu, "s");
+    put_row(t, m, "pack", (double)m->bytes, "B");
 }
 
 static int shade(double linear) {
@@ -139,36 +96,41 @@ static void write_every_pixel(const trial *t, const method *m, const images_grid
     fclose(f);
 }
 
-/* Packs are played as soon as they are baked; all have the reference's scene. */
-static void run(csv *c, trial *t) {
+static images_grid grid_of(const pack_image *image, uint32_t every) {
+    const vit_scene *meta = pack_sections_of(image->bytes).data[VIT_SECTION_META];
+    return (images_grid){meta->width, meta->height, every};
+}
+
+/* The path tracer's picture of a frame of the pack, whatever method that is by. */
+static void trace(const trial *t, const pack_image *image, uint32_t frame, double noise, truth *out) {
+    const pack_sections sections = pack_sections_of(image->bytes);
+    char folder[BENCH_PATH];
+    untuned_path(folder, "", "");
+    reference_input in = {.sections = &sections, .frame = frame, .every = t->every, .cache = folder};
+    truth_trace(&in, noise, bench_smoke() ? 0.2 : t->scene->seconds, out);
+}
+
+static void run(trial *t) {
     const untuned_scene *s = t->scene;
     const uint32_t frame = s->frames - 1;
-    char folder[BENCH_PATH];
-    images_grid grid = {.every = 1};
+    images_grid all = {0}, grid = {0};
     pack_image image = {0};
-    if (!untuned_write(s, t->size))
-        return;
     for (size_t i = 0; i < t->count; i++) {
         method *m = t->methods + i;
         image_free(&image);
-        image = bake(s, m);
-        const vit_scene *meta = pack_sections_of(image.bytes).data[VIT_SECTION_META];
-        grid = (images_grid){meta->width, meta->height, 1};
-        m->every_pixel = play(&image, VIT_VIEW_indirect, frame, &grid);
-        grid.every = s->every;
-        m->light = play(&image, VIT_VIEW_indirect, frame, &grid);
-        m->picture = play(&image, VIT_VIEW_final, frame, &grid);
+        image = method_bake(s, m);
+        all = grid_of(&image, 1);
+        grid = grid_of(&image, t->every);
+        m->every_pixel = method_play(&image, VIT_VIEW_indirect, frame, &all);
+        m->light = method_play(&image, VIT_VIEW_indirect, frame, &grid);
+        m->picture = method_play(&image, VIT_VIEW_final, frame, &grid);
     }
-    const pack_sections sections = pack_sections_of(image.bytes);
-    untuned_path(folder, "", "");
-    reference_input in = {.sections = &sections, .frame = frame, .every = s->every, .cache = folder};
-    truth_trace(&in, bench_smoke() ? 0.2 : s->seconds, &t->truth);
+    trace(t, &image, frame, TRUTH_NOISE, &t->truth);
     for (size_t i = 0; i < t->count; i++) {
-        print_method(c, t, t->methods + i);
-        write_every_pixel(t, t->methods + i, &grid);
+        print_method(t, t->methods + i);
+        write_every_pixel(t, t->methods + i, &all);
     }
     write_pictures(t);
-    fflush(stdout);
     for (size_t i = 0; i < t->count; i++) {
         free(t->methods[i].light);
         free(t->methods[i].picture);
@@ -178,6 +140,46 @@ static void run(csv *c, trial *t) {
     image_free(&image);
 }
 
+/* Where a light moves, which takes a reference; the same for all methods. */
+static void print_change(const trial *t, const method *m, const pack_image *image, const truth truths[2]) {
+    const images_grid grid = grid_of(image, t->every);
+    float *first = method_play(image, VIT_VIEW_indirect, 0, &grid);
+    float *last = method_play(image, VIT_VIEW_indirect, t->scene->frames - 1, &grid);
+    const double all = 100 * change_error(first, last, truths, ALL), as = 100 * change_error(first, last, truths, LIMITED);
+    printf(" %8.2f %8.2f %8.4f", all, as, truths[0].part[ALL].noise);
+    put_row(t, m, "change, indirect light", all, "%");
+    put_row(t, m, "change, as many reflections", as, "%");
+    free(first);
+    free(last);
+}
+
+static void run_motion(trial *t) {
+    truth truths[2] = {{.sum = NULL}};
+    for (size_t i = 0; i < t->count; i++) {
+        method *m = t->methods + i;
+        pack_image image = method_bake(t->scene, m);
+        const stillness v = stillness_of(&image, t->scene->frames);
+        printf("%-15s %-24s %7.3f", t->scene->name, m->name, 100 * v.noise);
+        put_row(t, m, "noise", 100 * v.noise, "%");
+        if (!(t->scene->seconds > 0)) {
+            printf(" %7.3f %7.2f", 100 * v.step, 100 * v.largest);
+            put_row(t, m, "step", 100 * v.step, "%");
+            put_row(t, m, "largest step", 100 * v.largest, "%");
+        } else
+            printf(" %7s %7s", "", "");
+        printf(" %7.1f", 100 * v.used);
+        for (uint32_t k = 0; k < 2 && i == 0 && t->scene->seconds > 0; k++)
+            trace(t, &image, k * (t->scene->frames - 1), MOTION_NOISE, truths + k);
+        if (t->scene->seconds > 0)
+            print_change(t, m, &image, truths);
+        printf("\n");
+        fflush(stdout);
+        image_free(&image);
+    }
+    truth_free(&truths[0]);
+    truth_free(&truths[1]);
+}
+
 static bool asked_for(const untuned_scene *s, int argc, char **argv) {
     for (int i = 1; i < argc; i++)
         if (strcmp(argv[i], s->name) == 0)
@@ -185,23 +187,43 @@ static bool asked_for(const untuned_scene *s, int argc, char **argv) {
     return argc == 1 && (s->smoke || !bench_smoke());
 }
 
+static void run_each(trial *t, int argc, char **argv) {
+    printf("all: indirect light of all reflections; as: of %u bounces, as photons' default; sum: with direct light. NMSE and "
+           "relMSE are less\nthe reference's own\n%-9s %-24s %-4s %6s %6s %6s %6s  %8s %8s  %7s %7s %8s %8s\n",
+           TRUTH_BOUNCES, "", "", "", "red", "green", "blue", "dark", "NMSE", "relMSE", "own", "own", "bake s", "MB");
+    t->every = STILL_EVERY;
+    t->size = bench_smoke() ? "48x36" : "192x144";
+    for (size_t i = 0; i < UNTUNED_SCENES; i++)
+        if (asked_for(untuned_scenes + i, argc, argv) && untuned_write(untuned_scenes + i, t->size)) {
+            t->scene = untuned_scenes + i;
+            run(t);
+            fflush(stdout);
+        }
+    printf(
+        "\n%% of indirect light; used: of surfaces seen; change: its error over a second, all and as above; own: reference's NMSE\n"
+        "%-15s %-24s %7s %7s %7s %7s %8s %8s %8s\n",
+        "", "", "noise", "step", "largest", "used", "change", "as", "own");
+    t->every = MOTION_EVERY;
+    t->size = bench_smoke() ? "48x36" : "256x192";
+    for (size_t i = 0; i < UNTUNED_MOTIONS; i++) {
+        untuned_scene s = untuned_motions[i];
+        s.frames = bench_smoke() ? MOTION_SPAN : s.frames;
+        if (asked_for(&s, argc, argv) && untuned_write(&s, t->size)) {
+            t->scene = &s;
+            run_motion(t);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     char words[256], *rest = NULL;
     const char *given = getenv("METHODS");
-    trial t = {.size = bench_smoke() ? "48x36" : "192x144"};
+    csv c = csv_open("indirect");
+    trial t = {.csv = &c};
     snprintf(words, sizeof words, "%s", given ? given : "basis photons");
     for (char *word = strtok_r(words, " ", &rest); word && t.count < METHODS_MOST; word = strtok_r(NULL, " ", &rest))
         t.methods[t.count++].name = word;
-    csv c = csv_open("indirect");
-    printf(
-        "all: indirect light of all reflections; as: of %u bounces, as photons' default; sum: with direct light. NMSE and relMSE "
-        "are less the reference's own\n%-9s %-24s %-4s %6s %6s %6s %6s  %8s %8s  %7s %7s %8s %8s\n",
-        TRUTH_BOUNCES, "", "", "", "red", "green", "blue", "dark", "NMSE", "relMSE", "own", "own", "bake s", "MB");
-    for (size_t i = 0; i < UNTUNED_SCENES; i++)
-        if (asked_for(untuned_scenes + i, argc, argv)) {
-            t.scene = untuned_scenes + i;
-            run(&c, &t);
-        }
+    run_each(&t, argc, argv);
     csv_close(&c, "indirect");
     return VIT_OK;
 }

@@ -83,105 +83,81 @@ typedef struct untuned_scene {
     const char *name;
     const slab *slabs;
     size_t slab_count;
-    double bulb[3];    /* centre of a shining ball of 3 cm radius; zeros: none */
     bench_scene model; /* .mesh: one more, NULL: none; .camera: how it stands */
-    const char *text;  /* camera and lights */
-    uint32_t frames;   /* the last of which is looked at */
-    uint32_t every;    /* of its pixels, along an edge, has the reference */
-    double seconds;    /* that the reference may take at most */
+    uint32_t frames;   /* of a second, the last of which is looked at */
+    double seconds;    /* that the reference may take at most; 0: none is needed */
     bool smoke;        /* among those of a short run */
+    const char *text;  /* camera and lights */
 } untuned_scene;
 
-#define SLABS(s) s, sizeof(s) / sizeof(slab)
-#define LAMP_MOVES(key0, key1, watts)                                                                                          \
-    "lights = ( { type = \"point\"; keys = ( { time = 0.0; position = " key0 "; power = " watts                                \
-    "; }, { time = 1.0; position = " key1 "; } ); } );\n"
-#define LAMP_STAYS(key, watts) "lights = ( { type = \"point\"; keys = ( { position = " key "; power = " watts "; } ); } );\n"
+#define LAMP_AT(first, watts, more)                                                                                            \
+    "lights = ( { type = \"point\"; keys = ( { position = " first "; power = " watts "; }" more " ); } );\n"
+#define THEN(position) ", { time = 1.0; position = " position "; }"
 #define LOOK(eye, at, fov) "camera: { keys = ( { eye = " eye "; target = " at "; fov = " fov "; } ); };\n"
-#define SUN(from)                                                                                                              \
-    "lights = ( { type = \"directional\"; keys = ( { position = " from                                                         \
-    "; target = [0.0, 0.0, 0.0]; irradiance = [90.0, 84.0, 70.0]; } ); } );\n"
-#define SKY "background = [2.4, 3.4, 5.0];\nsky: { light = true; };\n"
+#define OUTDOORS(sun)                                                                                                          \
+    "lights = ( { type = \"directional\"; keys = ( { position = " sun "; target = [0.0, 0.0, 0.0]; irradiance = [90.0, "       \
+    "84.0, 70.0]; } ); } );\nbackground = [2.4, 3.4, 5.0];\nsky: { light = true; };\n"
+#define DOOR_LOOK LOOK("[3.7, 1.6, 1.7]", "[0.3, 1.1, -0.4]", "65.0")
+
+#define SLABS(s) s, sizeof(s) / sizeof(slab)
+#define NO_MODEL                                                                                                               \
+    { .mesh = NULL }
+#define OWN(file)                                                                                                              \
+    { .mesh = file, .own = true, .camera = "" }
+#define MODEL(file, stands)                                                                                                    \
+    { .mesh = file, .camera = stands }
+
+/* The atrium's lights in its second second, and the Cornell box's: still or, with a further key, not. */
+#define ATRIUM(more)                                                                                                           \
+    "lights = ( { type = \"point\"; keys = ( { position = [-2.4, 2.8, -2.0]; power = [1100.0, 860.0, 570.0]; }" more           \
+    " ); }, { type = \"spot\"; inner = 10.0; outer = 17.0; keys = ( { position = [-8.0, 32.0, 7.0]; target = [0.5, 0.0, "      \
+    "-1.0]; power = [13000.0, 20000.0, 38000.0]; } ); }, { type = \"point\"; keys = ( { position = [12.95, 3.3, 0.0]; power "  \
+    "= [230.0, 165.0, 95.0]; } ); } );\n"
+#define CORNELL(more)                                                                                                          \
+    "lights = ( { type = \"spot\"; inner = 20.0; outer = 84.0; keys = ( { position = [-0.4, 1.94, 0.3]; target = [-0.4, 0.0, " \
+    "0.3]; power = [130.0, 115.0, 85.0]; }" more " ); } );\n"
 
 static const untuned_scene untuned_scenes[] = {
-    {.name = "door5cm",
-     SLABS(door_5cm),
-     .frames = 1,
-     .every = 2,
-     .seconds = 240,
-     .text = LOOK("[3.7, 1.6, 1.7]", "[0.3, 1.1, -0.4]", "65.0") LAMP_STAYS("[-2.2, 2.2, 0.7]", "[160.0, 150.0, 130.0]")},
-    {.name = "door20",
-     SLABS(door_20),
-     .frames = 2,
-     .every = 2,
-     .seconds = 120,
-     .smoke = true,
-     .text = LOOK("[3.7, 1.6, 1.7]", "[0.3, 1.1, -0.4]", "65.0")
-         LAMP_MOVES("[-2.2, 2.2, 0.7]", "[-2.6, 1.8, -0.4]", "[160.0, 150.0, 130.0]")},
-    {.name = "house",
-     SLABS(house),
-     .frames = 1,
-     .every = 2,
-     .seconds = 240,
-     .text = LOOK("[2.6, 1.6, -2.1]", "[-1.2, 1.0, 1.6]", "70.0") SUN("[-2.0, 3.0, 4.0]") SKY},
-    {.name = "ceiling",
-     SLABS(under_ceiling),
-     .frames = 1,
-     .every = 2,
-     .seconds = 60,
-     .text = LOOK("[0.3, 1.5, 1.9]", "[0.0, 1.3, 0.0]", "75.0")},
-    {.name = "court",
-     SLABS(court),
-     .frames = 1,
-     .every = 2,
-     .seconds = 60,
-     .text = LOOK("[3.6, 1.7, 4.5]", "[-0.6, 1.7, -2.0]", "65.0") SUN("[3.0, 6.0, 2.0]") SKY},
-    {.name = "corridor",
-     SLABS(corridor),
-     .frames = 1,
-     .every = 2,
-     .seconds = 120,
-     .text = LOOK("[-5.6, 1.6, 0.2]", "[0.5, 1.2, -0.1]", "60.0") LAMP_STAYS("[0.75, 2.2, -5.4]", "[120.0, 115.0, 100.0]")},
-    {.name = "bulb",
-     SLABS(bulb_room),
-     .bulb = {0.1, 1.9, 0.1},
-     .frames = 1,
-     .every = 2,
-     .seconds = 60,
-     .smoke = true,
-     .text = LOOK("[1.1, 1.6, 1.4]", "[-0.3, 0.9, -0.6]", "75.0")},
-    {.name = "duck",
-     SLABS(show_room),
-     .frames = 2,
-     .every = 2,
-     .seconds = 60,
-     .model = {.mesh = "gltf/Duck/Duck.gltf", .camera = "translate = [0.0, -0.099, 0.0];"},
-     .text = LOOK("[1.8, 1.7, 3.2]", "[0.0, 0.9, 0.0]", "60.0")
-         LAMP_MOVES("[-1.8, 2.6, 1.6]", "[-1.2, 2.7, 1.8]", "[220.0, 210.0, 190.0]")},
-    {.name = "truck",
-     SLABS(show_room),
-     .frames = 1,
-     .every = 2,
-     .seconds = 60,
-     .model = {.mesh = "gltf/CesiumMilkTruck/CesiumMilkTruck.gltf", .camera = "rotate = [0.0, 30.0, 0.0];"},
-     .text = LOOK("[2.9, 1.9, 4.1]", "[0.0, 1.1, 0.0]", "65.0") LAMP_STAYS("[-2.6, 2.9, 2.6]", "[260.0, 250.0, 230.0]")},
-    {.name = "kitchen",
-     .frames = 1,
-     .every = 2,
-     .seconds = 120,
-     .model = {.mesh = "country_kitchen/country_kitchen.gltf", .camera = ""},
-     .text = LOOK("[1.211, 1.805, 3.852]", "[-0.103, 1.680, 1.158]", "45.0")
-         LAMP_STAYS("[0.5, 2.8, 1.0]", "[200.0, 190.0, 170.0]")},
-    {.name = "cornell",
-     .frames = 1,
-     .every = 2,
-     .seconds = 60,
-     .model = {.mesh = "cornell.obj", .own = true, .camera = ""},
-     .text = LOOK(
-         "[0.0, 1.0, 3.72]", "[0.0, 1.0, 0.0]",
-         "39.6") "lights = ( { type = \"spot\"; inner = 20.0; outer = 84.0; keys = ( { position = [0.0, 1.94, 0.5]; target = [0.0, 0.0, "
-                 "0.5]; power = [130.0, 115.0, 85.0]; } ); } );\n"}};
+    {"door5cm", SLABS(door_5cm), NO_MODEL, 1, 240, false, DOOR_LOOK LAMP_AT("[-2.2, 2.2, 0.7]", "[160.0, 150.0, 130.0]", "")},
+    {"door20", SLABS(door_20), NO_MODEL, 2, 120, true,
+     DOOR_LOOK LAMP_AT("[-2.2, 2.2, 0.7]", "[160.0, 150.0, 130.0]", THEN("[-2.6, 1.8, -0.4]"))},
+    {"house", SLABS(house), NO_MODEL, 1, 240, false,
+     LOOK("[2.6, 1.6, -2.1]", "[-1.2, 1.0, 1.6]", "70.0") OUTDOORS("[-2.0, 3.0, 4.0]")},
+    {"ceiling", SLABS(under_ceiling), NO_MODEL, 1, 60, false, LOOK("[0.3, 1.5, 1.9]", "[0.0, 1.3, 0.0]", "75.0")},
+    {"court", SLABS(court), NO_MODEL, 1, 60, false,
+     LOOK("[3.6, 1.7, 4.5]", "[-0.6, 1.7, -2.0]", "65.0") OUTDOORS("[3.0, 6.0, 2.0]")},
+    {"corridor", SLABS(corridor), NO_MODEL, 1, 120, false,
+     LOOK("[-5.6, 1.6, 0.2]", "[0.5, 1.2, -0.1]", "60.0") LAMP_AT("[0.75, 2.2, -5.4]", "[120.0, 115.0, 100.0]", "")},
+    {"bulb", SLABS(bulb_room), NO_MODEL, 1, 60, false, LOOK("[1.1, 1.6, 1.4]", "[-0.3, 0.9, -0.6]", "75.0")},
+    {"duck", SLABS(show_room), MODEL("gltf/Duck/Duck.gltf", "translate = [0.0, -0.099, 0.0];"), 2, 60, false,
+     LOOK("[1.8, 1.7, 3.2]", "[0.0, 0.9, 0.0]", "60.0")
+         LAMP_AT("[-1.8, 2.6, 1.6]", "[220.0, 210.0, 190.0]", THEN("[-1.2, 2.7, 1.8]"))},
+    {"truck", SLABS(show_room), MODEL("gltf/CesiumMilkTruck/CesiumMilkTruck.gltf", "rotate = [0.0, 30.0, 0.0];"), 1, 60, false,
+     LOOK("[2.9, 1.9, 4.1]", "[0.0, 1.1, 0.0]", "65.0") LAMP_AT("[-2.6, 2.9, 2.6]", "[260.0, 250.0, 230.0]", "")},
+    {"kitchen", NULL, 0, MODEL("country_kitchen/country_kitchen.gltf", ""), 1, 120, false,
+     LOOK("[1.211, 1.805, 3.852]", "[-0.103, 1.680, 1.158]", "45.0") LAMP_AT("[0.5, 2.8, 1.0]", "[200.0, 190.0, 170.0]", "")},
+    {"cornell", NULL, 0, OWN("cornell.obj"), 1, 60, false, LOOK("[0.0, 1.0, 3.72]", "[0.0, 1.0, 0.0]", "39.6") CORNELL("")}};
 #define UNTUNED_SCENES (sizeof untuned_scenes / sizeof *untuned_scenes)
+
+/* A second of motion: the light's, the camera's there and back, or both. */
+#define THERE_AND_BACK(from, to, at, fov)                                                                                      \
+    "camera: { keys = ( { time = 0.0; eye = " from "; target = " at "; fov = " fov "; }, { time = 0.5; eye = " to              \
+    "; }, { time = 1.0; eye = " from "; } ); };\n"
+#define CORNELL_STAYS LOOK("[0.0, 1.0, 3.72]", "[0.0, 1.0, 0.0]", "39.6")
+#define CORNELL_MOVES THERE_AND_BACK("[0.0, 1.0, 3.72]", "[0.4, 1.15, 3.4]", "[0.0, 1.0, 0.0]", "39.6")
+#define CORNELL_LAMP CORNELL(", { time = 1.0; position = [0.4, 1.94, 0.2]; target = [0.4, 0.0, 0.2]; }")
+#define ATRIUM_STAYS LOOK("[-8.8, 1.8, 1.35]", "[2.5, 3.3, -0.8]", "62.0")
+#define ATRIUM_MOVES THERE_AND_BACK("[-8.8, 1.8, 1.35]", "[-8.0, 1.9, 1.0]", "[2.5, 3.3, -0.8]", "62.0")
+#define ATRIUM_LAMP ATRIUM(THEN("[0.4, 4.2, -0.4]"))
+
+static const untuned_scene untuned_motions[] = {
+    {"cornell-light", NULL, 0, OWN("cornell.obj"), 24, 120, false, CORNELL_STAYS CORNELL_LAMP},
+    {"cornell-camera", NULL, 0, OWN("cornell.obj"), 24, 0, false, CORNELL_MOVES CORNELL("")},
+    {"cornell-both", NULL, 0, OWN("cornell.obj"), 24, 120, true, CORNELL_MOVES CORNELL_LAMP},
+    {"atrium-light", NULL, 0, OWN("atrium.obj"), 24, 120, false, ATRIUM_STAYS ATRIUM_LAMP},
+    {"atrium-camera", NULL, 0, OWN("atrium.obj"), 24, 0, false, ATRIUM_MOVES ATRIUM("")},
+    {"atrium-both", NULL, 0, OWN("atrium.obj"), 24, 120, false, ATRIUM_MOVES ATRIUM_LAMP}};
+#define UNTUNED_MOTIONS (sizeof untuned_motions / sizeof *untuned_motions)
 
 /* A file of the bench's own. */
 static inline void untuned_path(char path[BENCH_PATH], const char *name, const char *ending) {
@@ -256,15 +232,15 @@ static inline bool untuned_write(const untuned_scene *s, const char *size) {
     fputs("mtllib indirect.mtl\n", f);
     for (size_t i = 0; i < s->slab_count; i++)
         put_slab(f, &s->slabs[i]);
-    if (s->bulb[1] > 0)
-        put_bulb(f, s->bulb);
+    if (s->slabs == bulb_room)
+        put_bulb(f, (const double[]){0.1, 1.9, 0.1});
     fclose(f);
     f = untuned_create(s->name, ".cfg");
     int width, height;
     if (sscanf(size, "%dx%d", &width, &height) != 2)
         bench_fail("no size: %s", size);
-    fprintf(f, "name = \"%s\";\noutput: { width = %d; height = %d; fps = 1.0; frames = %u; };\nmeshes = ( ", s->name, width,
-            height, s->frames);
+    fprintf(f, "name = \"%s\";\noutput: { width = %d; height = %d; fps = %u.0; frames = %u; };\nmeshes = ( ", s->name, width,
+            height, s->frames > 1 ? s->frames - 1 : 1, s->frames);
     if (s->slab_count)
         fprintf(f, "{ file = \"%s.obj\"; }%s", s->name, model.mesh ? ", " : "");
     if (model.mesh)

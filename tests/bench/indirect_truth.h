@@ -8,8 +8,9 @@
 #include "reference/reference.h"
 
 #define TRUTH_NOISE 0.002 /* NMSE of indirect light that is enough */
-#define TRUTH_BOUNCES 4u  /* of light with an end: the default of `bounces`; another number would be another cached reference  \
-                           */
+#define TRUTH_BOUNCES                                                                                                          \
+    4u /* of light with an end: the default of `bounces`; another number would be another cached reference                     \
+        */
 
 /* Indirect light of all reflections; of as many as photons make by default; the whole picture. */
 enum { ALL, LIMITED, PICTURE, TRUTH_PARTS };
@@ -72,7 +73,7 @@ static inline void truth_finish(truth *t) {
 }
 
 /* Paths are doubled until the noise is small enough or twice as many would take more than `seconds`. */
-static inline void truth_trace(reference_input *in, double seconds, truth *t) {
+static inline void truth_trace(reference_input *in, double noise, double seconds, truth *t) {
     vit_text why;
     memset(t, 0, sizeof *t);
     in->target = 1e-12; /* never: this loop decides */
@@ -84,7 +85,7 @@ static inline void truth_trace(reference_input *in, double seconds, truth *t) {
         const truth_part p = truth_part_of(t->r.unlimited, t->r.unlimited_variance, 3 * (size_t)t->r.width * t->r.height);
         if (!(p.mean > 0))
             bench_fail("reference: there is no indirect light");
-        if (p.noise <= TRUTH_NOISE || 2 * t->r.seconds > seconds)
+        if (p.noise <= noise || 2 * t->r.seconds > seconds)
             break;
         while (in->max_samples < t->r.samples) /* of an earlier run */
             in->max_samples *= 2;
