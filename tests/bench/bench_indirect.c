@@ -199,10 +199,9 @@ static void run_each(trial *t, int argc, char **argv) {
             run(t);
             fflush(stdout);
         }
-    printf(
-        "\n%% of indirect light; used: of surfaces seen; change: its error over a second, all and as above; own: reference's NMSE\n"
-        "%-15s %-24s %7s %7s %7s %7s %8s %8s %8s\n",
-        "", "", "noise", "step", "largest", "used", "change", "as", "own");
+    printf("\n%% of indirect light; used: of surfaces seen; change: its error over a second; own: the reference's NMSE\n"
+           "%-15s %-24s %7s %7s %7s %7s %8s %8s %8s\n",
+           "", "", "noise", "step", "largest", "used", "change", "as", "own");
     t->every = MOTION_EVERY;
     t->size = bench_smoke() ? "48x36" : "256x192";
     for (size_t i = 0; i < UNTUNED_MOTIONS; i++) {
