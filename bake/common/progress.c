@@ -4,7 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static double now(void) {
+double progress_now(void) {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
@@ -26,20 +26,20 @@ static void wipe(const progress *p) {
 void progress_end(progress *p) {
     wipe(p);
     if (p->stage && !p->quiet)
-        fprintf(stderr, "%-28s %7.2f s\n", p->stage, now() - p->began);
+        fprintf(stderr, "%-28s %7.2f s\n", p->stage, progress_now() - p->began);
     p->stage = NULL;
 }
 
 void progress_stage(progress *p, const char *stage) {
     progress_end(p);
     p->stage = stage;
-    p->began = p->drawn = now();
+    p->began = p->drawn = progress_now();
     if (p->terminal)
         fprintf(stderr, "%-28s", stage);
 }
 
 void progress_step(progress *p, double fraction) {
-    double t = now(), spent = t - p->began;
+    double t = progress_now(), spent = t - p->began;
     if (!p->terminal || !p->stage || t - p->drawn < 0.1)
         return;
     p->drawn = t;

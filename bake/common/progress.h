@@ -21,5 +21,7 @@ void progress_step(progress *p, double fraction);
 /* A line of its own: a warning or a result. Even when quiet if `always`. */
 void progress_line(progress *p, bool always, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void progress_end(progress *p);
+/* Seconds since some moment, monotonic. */
+double progress_now(void);
 
 #endif

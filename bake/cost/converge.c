@@ -161,6 +161,7 @@ vit_status converge_run(const sweep_input *in, const converge_plan *how, converg
     memset(out, 0, sizeof *out);
     out->shrink = how->shrink;
     own.knobs = NULL;
+    own.pipeline->scene.quality.indirect = INDIRECT_PHOTONS; /* that have what is to converge */
     own.list = converge_list;
     own.list_user = how;
     own.timed = how->steps;

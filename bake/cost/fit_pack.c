@@ -36,6 +36,7 @@ static vit_status try_setting(pipeline *p, uint32_t device, const fit_budget *b,
                               bool *holds, vit_text *why) {
     *holds = true;
     vit_status status = sweep_quality(chosen, &p->scene.quality, why);
+    p->indirect_why[0] = '\0';
     const pipeline_choice choice = pipeline_default(p);
     if (status == VIT_OK)
         status = pipeline_pack(p, &choice, out, why);

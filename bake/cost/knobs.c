@@ -69,14 +69,37 @@ void knobs_help(void) {
             printf("  %-18s %s\n", knob_name(k), k < SETTINGS ? setting_rows[k].help : own[k - SETTINGS].what);
 }
 
+/* Is a setting one of makers of indirect light, none of which is in `effects`? */
+static bool is_others(int k, uint64_t effects) {
+    const uint64_t needs = k < SETTINGS ? setting_rows[k].needs : 0;
+    return needs != 0 && !(needs & ~vit_indirect_makers()) && !(needs & effects);
+}
+
 /* As scene_quality_text(), without what has no effect. */
 static void text_of_effect(const scene_quality *q, char *text, size_t size) {
+    const uint64_t maker = q->indirect == INDIRECT_BASIS ? VIT_BIT(BASIS) : VIT_BIT(PHOTONS);
     scene_quality plain = *q;
+    size_t used = 0;
     if (plan_leaves_area_out(q))
         plain.effective_area = false;
     if (q->antialias == 1)
         plain.antialias_contrast = 0;
-    scene_quality_text(&plain, text, size);
+    text[0] = '\0';
+    for (int i = 0; i < SETTINGS; i++)
+        if (!is_others(i, maker) && (i != SETTING_AT_flatten || q->flattened))
+            used += fields_write(&setting_rows[i].field, &plain, text + used, size - used);
+}
+
+void knobs_idle(const knobs_input *in, char *text, size_t room) {
+    bool on[KNOBS];
+    vit_text why;
+    size_t used = 0;
+    text[0] = '\0';
+    if (select_knobs(in->only, on, &why) != VIT_OK)
+        return;
+    for (int k = 0; k < KNOBS && used < room; k++)
+        if (on[k] && is_others(k, in->effects))
+            used += (size_t)snprintf(text + used, room - used, "%s%s", used ? ", " : "", knob_name(k));
 }
 
 bool knob_same(const knob_setting *a, const knob_setting *b) {

@@ -40,6 +40,8 @@ typedef struct knob_list {
 /* The default and each knob alone, value by value. VIT_USAGE: `only` names no knob. On failure nothing is left to close. */
 vit_status knobs_open(const knobs_input *in, knob_list *out, vit_text *why);
 void knobs_close(knob_list *l);
+/* Names of the knobs among those asked for that turn nothing, since another way makes indirect light; "": none. */
+void knobs_idle(const knobs_input *in, char *text, size_t room);
 /* That alone: whether `only`, "a,b,c" or NULL, names knobs. */
 vit_status knobs_check(const char *only, vit_text *why);
 

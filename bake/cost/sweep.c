@@ -61,10 +61,13 @@ static vit_status choose_grid(sweep *s, vit_text *why) {
 
 static vit_status pack_default(sweep *s, vit_text *why) {
     pipeline *p = s->in->pipeline;
+    vit_status status = pipeline_settle_indirect(p, why); /* knobs are its settings */
+    if (status != VIT_OK)
+        return status;
     pipeline_choice choice = pipeline_default(p);
     choice.frames = s->frames;
     choice.frame_count = s->frame_count;
-    vit_status status = pipeline_pack(p, &choice, &s->base, why);
+    status = pipeline_pack(p, &choice, &s->base, why);
     if (status != VIT_OK)
         return status;
     s->direct_only = calloc(s->base.tracks.light_count + 1u, sizeof *s->direct_only);
@@ -114,6 +117,11 @@ static vit_status list_settings(sweep *s, vit_text *why) {
                             .only = s->in->knobs,
                             .in_quality = s->in->to_choose,
                             .most = s->in->settings};
+    char idle[256];
+    knobs_idle(&in, idle, sizeof idle);
+    if (idle[0] && in.effects & VIT_BIT(INDIRECT))
+        progress_line(s->progress, false, "indirect light by %s: nothing to turn is left to %s",
+                      settings_indirect_name(q->indirect), idle);
     vit_status status =
         s->in->list ? s->in->list(s->in->list_user, q, in.radius, &s->knobs, why) : knobs_open(&in, &s->knobs, why);
     if (status != VIT_OK)

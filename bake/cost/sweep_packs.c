@@ -36,6 +36,7 @@ vit_status sweep_take_pack(sweep *s, uint32_t i, vit_text *why) {
     if (status != VIT_OK)
         return fail(status, why, k->name, why->text);
     *pack = (sweep_pack){.bytes = packed.bytes, .size = packed.size};
+    s->out->settings[i].bake_seconds = packed.seconds;
     s->kept += packed.size;
     packed.bytes = NULL;
     pipeline_packed_free(&packed);

@@ -105,6 +105,7 @@ vit_status pipeline_settle_indirect(pipeline *p, vit_text *why) {
 
 vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_packed *out, vit_text *why) {
     bake b = {.p = p, .choice = choice, .scene = p->scene, .out = out};
+    const double began = progress_now();
     memset(out, 0, sizeof *out);
     b.scene.quality = choice->quality;
     b.scene.width = choice->width;
@@ -118,6 +119,7 @@ vit_status pipeline_pack(pipeline *p, const pipeline_choice *choice, pipeline_pa
         status = pack_stages[i].run(&b, why);
     }
     progress_end(p->progress);
+    out->seconds += progress_now() - began;
     if (status != VIT_OK)
         pipeline_packed_free(out);
     return status;

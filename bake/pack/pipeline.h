@@ -79,6 +79,7 @@ typedef struct pipeline_packed {
     uint32_t *met; /* a word per material: 1 where baked photons met it */
     vit_gold *gold;
     pack_sections sections; /* point into this struct and into the pipeline: neither may move or end before */
+    double seconds;         /* that it took, or would have taken had nothing been kept of packs before */
     void *bytes;            /* the pack */
     size_t size;
 } pipeline_packed;

@@ -2,6 +2,7 @@
 #include "common/fail.h"
 #include "light/panes.h"
 #include "pack/stages.h"
+#include <math.h>
 #include <stdlib.h>
 
 /* Sources that stay as they are, and lights that do not. */
@@ -44,7 +45,9 @@ static vit_status find(const bake *b, const photon_scene *s, baked_input *in, vi
         return bake_fail(why, VIT_FAILED, "Embree fails");
     progress_stage(p->progress, "indirect light");
     in->rays = &rays;
+    const double began = progress_now();
     const vit_status status = baked_find(in, &b->out->baked, why);
+    b->out->baked.seconds = progress_now() - began;
     photon_rays_close(&rays);
     return status;
 }
@@ -91,7 +94,9 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .user = p->progress};
     if (still && moving)
         in.still_count = sources(b, still, moving, &in.moving_count);
+    const double began = progress_now();
     const vit_status status = still && moving ? find_or_get(b, &s, &in, why) : out_of_memory(why);
+    out->seconds += fmax(out->baked.seconds - (progress_now() - began), 0);
     free(still);
     free(moving);
     if (status != VIT_OK)

@@ -1,6 +1,7 @@
 /* Stages of light: who gets how many photon paths and which of them matter, area lights, photons, their radius, zones. */
 #include "light/photons.h"
 #include "pack/stages.h"
+#include <math.h>
 #include <stdlib.h>
 
 #define GUIDED_BY                                                                                                              \
@@ -197,8 +198,10 @@ vit_status stage_zones(bake *b, vit_text *why) {
                             .progress = stages_step,
                             .user = p->progress};
     const bool own = out->geometry == &p->geometry; /* triangles of another shape are not to be mixed up with these */
+    const double began = progress_now();
     const vit_status status =
         own ? zones_kept_bake(p->kept, &in, &out->cells, &out->zones, why) : zones_bake(&in, &out->cells, &out->zones, why);
+    out->seconds += fmax(out->zones.seconds - (progress_now() - began), 0);
     out->plan.scene.cells = out->cells.count;
     free(gives);
     b->again = c->quality.zones; /* a photon has the zone of the cell where it lands */

@@ -34,6 +34,7 @@ typedef struct baked {
     vit_basis_frame *frames; /* section BFRM: frame x light */
     uint32_t lights;
     transport_report report;
+    double seconds; /* that it took */
 } baked;
 
 /* What can be told beforehand. */

@@ -12,7 +12,7 @@ static void print_header(FILE *to) {
     ERRORS(X, indirect)
     ERRORS(X, unlimited)
 #undef X
-    (void)fputs(",front,front_relmse,path_tracer_ms_at_nmse,path_tracer_ms_at_relmse,elsewhere\n", to);
+    (void)fputs(",front,front_relmse,path_tracer_ms_at_nmse,path_tracer_ms_at_relmse,elsewhere,bake_seconds\n", to);
 }
 
 static void comma_number(FILE *to, double value) {
@@ -42,7 +42,9 @@ static void print_row(const cost_results *r, uint32_t i, FILE *to) {
     (void)fprintf(to, ",%d,%d", s->pareto, s->pareto_relmse);
     comma_number(to, report_equal_ms(r, s, REPORT_NMSE));
     comma_number(to, report_equal_ms(r, s, REPORT_RELMSE));
-    (void)fprintf(to, ",%d\n", s->elsewhere);
+    (void)fprintf(to, ",%d", s->elsewhere);
+    comma_number(to, s->bake_seconds);
+    (void)fputc('\n', to);
 }
 
 void report_csv(const cost_results *r, FILE *to) {

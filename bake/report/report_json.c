@@ -59,6 +59,8 @@ static void print_setting(const cost_results *r, uint32_t i, FILE *to) {
     (void)fprintf(to,
                   ", \"timed\": %" PRIu32 ", \"work\": %" PRIu64 ", \"device_bytes\": %" PRIu64 ", \"pack_bytes\": %" PRIu64,
                   s->timed, s->work, s->device_bytes, s->pack_bytes);
+    (void)fputs(", ", to);
+    member_number(to, "bake_seconds", s->bake_seconds);
     (void)fprintf(to, ", \"front\": %s, \"front_relmse\": %s, \"elsewhere\": %s,\n     ", s->pareto ? "true" : "false",
                   s->pareto_relmse ? "true" : "false", s->elsewhere ? "true" : "false");
     member_number(to, "path_tracer_ms_at_nmse", report_equal_ms(r, s, REPORT_NMSE));

@@ -130,12 +130,22 @@ static bool numbered(const plot *p) {
     return longer;
 }
 
+/* Ways of making indirect light have their names wherever they lie. */
+static bool is_method(const plot *p, uint32_t i) {
+    return strcmp(p->r->settings[i].knob, "indirect") == 0 && drawn(p, i);
+}
+
 /* What stands at a setting's point. */
 static void name_point(const plot *p, uint32_t i, char out[COST_NAME]) {
-    if (i > 0 && numbered(p))
+    if (i > 0 && numbered(p) && !is_method(p, i))
         (void)snprintf(out, COST_NAME, "%u", i);
     else
         (void)snprintf(out, COST_NAME, "%s", p->r->settings[i].name);
+    const char *maker = i == 0 ? strstr(p->r->settings[0].values, "indirect = \"") : NULL;
+    if (maker) {
+        maker += strlen("indirect = \"");
+        (void)snprintf(out, COST_NAME, "default: %.*s", (int)strcspn(maker, "\""), maker);
+    }
 }
 
 static void print_key(const plot *p, FILE *to) {
@@ -143,7 +153,7 @@ static void print_key(const plot *p, FILE *to) {
         return;
     (void)fputs("<ul class=\"key\">", to);
     for (uint32_t k = 0; k < p->front_count; k++)
-        if (p->pareto[k] != 0) {
+        if (p->pareto[k] != 0 && !is_method(p, p->pareto[k])) {
             (void)fprintf(to, "<li data-setting=\"%u\"><b class=\"front\">%u</b> ", p->pareto[k], p->pareto[k]);
             text_html(to, p->r->settings[p->pareto[k]].name);
             (void)fputs("</li>", to);
@@ -151,17 +161,27 @@ static void print_key(const plot *p, FILE *to) {
     (void)fputs("</ul>\n", to);
 }
 
-/* Names the default and the front's settings. False: out of memory. */
+static bool on_front(const plot *p, uint32_t i) {
+    for (uint32_t k = 0; k < p->front_count; k++)
+        if (p->pareto[k] == i)
+            return true;
+    return false;
+}
+
+/* Names the default, the front's settings and the ways of making indirect light. False: out of memory. */
 static bool print_labels(const plot *p, FILE *to) {
     report_span *avoid = malloc((3 * (size_t)p->r->count + 2) * sizeof avoid[0]);
-    report_label *labels = calloc((size_t)p->front_count + 1, sizeof labels[0]);
-    uint32_t *named = malloc(((size_t)p->front_count + 1) * sizeof named[0]), count = 0;
+    report_label *labels = calloc((size_t)p->r->count + 1, sizeof labels[0]);
+    uint32_t *named = malloc(((size_t)p->r->count + 1) * sizeof named[0]), count = 0;
     if (avoid && labels && named) {
         if (drawn(p, 0))
             named[count++] = 0;
         for (uint32_t k = 0; k < p->front_count; k++)
             if (p->pareto[k] != 0)
                 named[count++] = p->pareto[k];
+        for (uint32_t i = 1; i < p->r->count; i++)
+            if (is_method(p, i) && !on_front(p, i))
+                named[count++] = i;
         for (uint32_t k = 0; k < count; k++) {
             char name[COST_NAME];
             name_point(p, named[k], name);

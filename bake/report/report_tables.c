@@ -83,6 +83,7 @@ static void print_setting(const cost_results *r, uint32_t i, FILE *to) {
     cell(to, 100 * s->indirect.bias, "%+.1f");
     cell(to, (double)s->device_bytes / 1048576, "%.1f");
     cell(to, (double)s->pack_bytes / 1048576, "%.2f");
+    cell(to, s->bake_seconds, "%.1f");
     cell(to, (double)s->work * 1e-6, "%.1f");
     (void)fputs("</tr>\n", to);
 }
@@ -106,6 +107,7 @@ void report_table_settings(const cost_results *r, FILE *to) {
                                      {"Indirect bias %", true},
                                      {"Device MiB", true},
                                      {"Pack MiB", true},
+                                     {"Bake s", true},
                                      {"Work, millions", true}};
     (void)fputs("<div class=\"wide full\"><table id=\"settings\" class=\"sortable\" data-sort=\"4\">", to);
     HEADINGS(to, columns);

@@ -23,6 +23,7 @@ typedef struct cost_setting {
     uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS]; /* of the frame that is compared: exact */
     uint64_t work;                                     /* work units of that frame (fit.h) */
     uint64_t device_bytes, pack_bytes;
+    double bake_seconds;        /* of the pack of the frames that are timed */
     cost_error total, indirect; /* against the bounce-limited reference */
     cost_error unlimited;       /* total light against the unlimited reference */
     float *image;               /* total light on the reference's grid: 3 floats a pixel, linear, exposed */

@@ -1,4 +1,5 @@
 #include "zones/kept.h"
+#include "common/progress.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,7 +98,9 @@ vit_status zones_kept_bake(zones_kept *k, const zones_input *in, cells *out, zon
         *found = o->found;
         return VIT_OK;
     }
+    const double began = progress_now();
     vit_status status = zones_bake(in, out, found, why);
+    found->seconds = progress_now() - began;
     if (status == VIT_OK)
         keep(k, in, out, found);
     return status;

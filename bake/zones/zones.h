@@ -31,6 +31,7 @@ typedef struct zones_found {
     uint32_t receivers, patches; /* cells seen from the path; groups of cells that share a zone */
     double wrong;                /* share of kernel weight that 32 zones keep or reject against the baked visibility */
     double open_area;            /* m2 of sides that light reaches */
+    double seconds;              /* that it took */
 } zones_found;
 
 /* Divides the surface into cells and fills them in. VIT_FAILED: out of memory, or Embree fails. */

@@ -245,6 +245,33 @@ static void write_changes_the_quality_block_and_nothing_else(void **state) {
     free(after);
 }
 
+/* A row for each way of making indirect light, with the time of its bake; a label in the plot; and a word about knobs that turn
+ * nothing. */
+static void ways_of_making_indirect_light_are_compared(void **state) {
+    char *scene_text = read_file(SCENE, NULL), with[4096];
+    const char *block = strstr(scene_text, "quality: {");
+    (void)state;
+    (void)snprintf(with, sizeof with, "%.*squality: { indirect = \"basis\"; receiver_rays = 64; %s", (int)(block - scene_text),
+                   scene_text, block + strlen("quality: {"));
+    put(TEST_PACKS "/room-basis.cfg", with);
+    free(scene_text);
+    tool(&run, TOOL_COST " " TEST_PACKS "/room-basis.cfg --size 48x32 --knobs indirect,photons,tile --settings 9 --repeats 7 "
+                         "--reference-error 0.01 --max-samples 64 --no-cache --device host -o " LAB "/methods");
+    tool_succeeds(&run);
+    assert_non_null(strstr(run.err, "indirect light by basis: nothing to turn is left to photons\n"));
+    read_csv(LAB "/methods/report.csv");
+    assert_int_equal(csv.rows, 1 + 3 + 2);
+    const int list = row_of("indirect photons list"), buckets = row_of("indirect photons buckets"), tile = row_of("tile 8");
+    assert_true(at(list, "total_nmse") > at(0, "total_nmse") && at(buckets, "total_nmse") != at(list, "total_nmse"));
+    assert_true(at(list, "device_bytes") != at(0, "device_bytes"));
+    assert_string_equal(text_at(tile, "indirect_nmse"), text_at(0, "indirect_nmse"));
+    assert_true(at(list, "bake_seconds") > 0 && at(0, "bake_seconds") > 0);
+    char *page = read_file(LAB "/methods/index.html", NULL);
+    assert_non_null(strstr(page, ">default: basis<"));
+    assert_non_null(strstr(page, ">indirect photons list<"));
+    free(page);
+}
+
 static void mistakes_are_named(void **state) {
     (void)state;
     tool(&run, TOOL_COST " " SCENE);
@@ -304,6 +331,7 @@ int main(void) {
         cmocka_unit_test(the_fronts_are_what_a_look_at_all_pairs_finds),
         cmocka_unit_test(the_choice_is_what_the_table_says),
         cmocka_unit_test(a_budget_that_nothing_fits_names_the_closest_miss),
+        cmocka_unit_test(ways_of_making_indirect_light_are_compared),
         cmocka_unit_test(a_fit_times_only_what_could_be_the_answer),
         cmocka_unit_test(a_fit_makes_no_pictures_of_what_it_cannot_choose),
         cmocka_unit_test(write_changes_the_quality_block_and_nothing_else),

@@ -186,10 +186,41 @@ static void knobs_of_indirect_light_need_what_they_turn(void **state) {
     assert_string_equal(l.settings[1].knob, "estimate");
     assert_int_equal(l.count, 3 * 2 * 3); /* combined, too */
     knobs_close(&l);
-    l = make_for(other | VIT_BIT(BASIS), &base, 0.8, only, 100);
+    scene_quality by_basis = base;
+    by_basis.indirect = INDIRECT_BASIS;
+    l = make_for(other | VIT_BIT(BASIS), &by_basis, 0.8, only, 100);
     assert_int_equal(l.count, 1 + 2);
     assert_string_equal(l.settings[1].knob, "receiver_rays");
     knobs_close(&l);
+}
+
+/* Ways of making indirect light are a knob; settings of the others than the default's make no difference, and are named. */
+static void ways_of_making_indirect_light_are_a_knob(void **state) {
+    static const char only[] = "photons,estimate,indirect,receiver_rays,tile";
+    const uint64_t all = ~(vit_effects_upon(VIT_BIT(INDIRECT))) | VIT_BIT(INDIRECT);
+    char idle[256];
+    scene_quality q = base;
+    (void)state;
+    knobs_input in = {.base = &q, .radius = 0.8, .effects = all | VIT_BIT(PHOTONS), .only = only, .most = 1};
+    knob_list l = make_for(in.effects, &q, 0.8, only, 100);
+    assert_int_equal(find(&l, "indirect basis")->quality.indirect, INDIRECT_BASIS);
+    for (uint32_t i = 0; i < l.count; i++) /* the default; "estimate buckets" are the buckets already */
+        assert_null(strstr(l.settings[i].name, "indirect photons"));
+    knobs_close(&l);
+    knobs_idle(&in, idle, sizeof idle);
+    assert_string_equal(idle, "receiver_rays");
+    q.indirect = INDIRECT_BASIS;
+    q.buckets = true; /* which the basis does not care for */
+    in.effects = all | VIT_BIT(BASIS);
+    l = make_for(in.effects, &q, 0, only, 100);
+    assert_int_equal(l.count, 1 + 3 + 2 + 2);
+    assert_true(find(&l, "indirect photons list")->quality.indirect == INDIRECT_PHOTONS);
+    assert_false(find(&l, "indirect photons list")->quality.buckets);
+    assert_true(find(&l, "indirect photons buckets")->quality.buckets);
+    assert_int_equal(find(&l, "receiver_rays 128")->quality.receiver_rays, 128);
+    knobs_close(&l);
+    knobs_idle(&in, idle, sizeof idle);
+    assert_string_equal(idle, "photons, estimate");
 }
 
 static void what_a_setting_says_reads_back(void **state) {
@@ -230,6 +261,7 @@ int main(void) {
         cmocka_unit_test(only_knobs_that_are_named_are_turned_and_unknown_ones_refused),
         cmocka_unit_test(without_photons_nothing_is_a_multiple_of_them),
         cmocka_unit_test(knobs_of_indirect_light_need_what_they_turn),
+        cmocka_unit_test(ways_of_making_indirect_light_are_a_knob),
         cmocka_unit_test(what_a_setting_says_reads_back),
         cmocka_unit_test(bad_settings_are_refused_and_change_nothing),
     };
