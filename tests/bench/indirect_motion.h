@@ -9,7 +9,7 @@
  * by this, true shadow edges that pass included, which indirect light has not. step, largest: where no light moves nothing
  * changes; the same of E(1) - E(0) itself, and the largest of all, over the mean. change: error of the last frame less the
  * first against the path tracer's, root of the mean square over that of the true change,
- * %, each less what the path tracer's own noise adds. */
+ * %, each less what the path tracer's own noise adds, which is stated: an error far below it is not known well. */
 #ifndef VIT_BENCH_INDIRECT_MOTION_H
 #define VIT_BENCH_INDIRECT_MOTION_H
 
@@ -173,18 +173,24 @@ static inline stillness stillness_of(const pack_image *pack, uint32_t frames) {
                        .used = s.values / (3 * s.pixels)};
 }
 
+typedef struct change {
+    double error, own; /* over the true change: the method's, and what the path tracer's noise alone would make of it */
+} change;
+
 /* first, last: the method's light; truths: the path tracer's of the same frames. */
-static inline double change_error(const float *first, const float *last, const truth truths[2], int part) {
+static inline change change_of(const float *first, const float *last, const truth truths[2], int part) {
     const truth_part *a = &truths[0].part[part], *b = &truths[1].part[part];
     const size_t values = 3 * (size_t)truths[0].r.width * truths[0].r.height;
     double wrong = 0, right = 0, noise = 0;
     for (size_t i = 0; i < values; i++) {
-        const double change = b->light[i] - a->light[i], off = (double)last[i] - (double)first[i] - change;
+        const double true_change = b->light[i] - a->light[i], off = (double)last[i] - (double)first[i] - true_change;
         wrong += off * off;
-        right += change * change;
+        right += true_change * true_change;
         noise += a->variance[i] + b->variance[i];
     }
-    return sqrt(fmax(wrong - noise, 0) / fmax(right - noise, 1e-6 * right));
+    if (!(right > noise))
+        bench_fail("motion: the reference is too noisy to tell what changes");
+    return (change){sqrt(fmax(wrong - noise, 0) / (right - noise)), sqrt(noise / (right - noise))};
 }
 
 #endif
