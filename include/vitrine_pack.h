@@ -19,7 +19,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 6u
+#define VIT_PACK_VERSION 7u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
@@ -34,7 +34,7 @@
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how
  * much of the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on
- * area lights, then sets of directions to the sky. SKYT: the sky's picture. */
+ * area lights, then sets of directions to the sky. SKYT: the sky's picture. XFER: a vit_transfer. */
 #define VIT_SECTIONS(X)                                                                                                        \
     X(META, vit_scene, 1u)                                                                                                     \
     X(CAMS, vit_camera, s->frames)                                                                                             \
@@ -57,6 +57,11 @@
     X(BWRD, vit_u32, s->basis_words)                                                                                           \
     X(BCOE, vit_basis_coefficient, s->basis_coefficients)                                                                      \
     X(BFRM, vit_basis_frame, (uint64_t)s->frames * s->basis_lights)                                                            \
+    X(PATC, vit_patch, s->patches)                                                                                             \
+    X(PPNT, vit_patch_point, s->patch_points)                                                                                  \
+    X(GROW, vit_gather_row, s->patches ? s->receivers : 0u)                                                                    \
+    X(GATH, vit_u32, s->gather_words)                                                                                          \
+    X(XFER, vit_u32, s->transfer_words)                                                                                        \
     X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)
 
@@ -89,6 +94,15 @@ typedef struct vit_pack_entry {
  * `effects` must be set before. VIT_BAD_INPUT: a count is out of range or a product overflows; the text begins with the field's
  * name. `why` may be NULL. */
 vit_status vit_pack_derive(vit_scene *s, vit_text *why);
+
+/* Where the parts of a coded transfer matrix are, for codec, patches, rank, and the words that sparse entries take. 0: these
+ * would be too many words. */
+int vit_transfer_lay_out(vit_u32 codec, vit_u32 patches, vit_u32 rank, uint64_t sparse_words, vit_transfer *out);
+#define VIT_TRANSFER_MOST_PATCHES 65536u
+#define VIT_TRANSFER_MOST_RANK 512u
+/* VIT_BAD_INPUT: the words, as a pack has them, are no coded matrix: nothing may be computed from them. The text has no place
+ * in it. */
+vit_status vit_transfer_check(const vit_u32 *words, size_t count, vit_text *why);
 
 /* The hash of frames in this format. */
 static inline vit_u32 *vit_gold_hash(vit_gold *g, vit_format format) {

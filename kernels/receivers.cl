@@ -1,5 +1,8 @@
-/* Baked indirect light (METHODS.md, "Irradiance basis"): the pass relight brings receivers' irradiance up to where the frame's
- * lights are; the pass samples interpolates between the three receivers of their cell. */
+/* Indirect light at baked places, the receivers (METHODS.md, "Irradiance basis"): the pass relight, or with live radiosity the
+ * pass gather_patches (radiosity.cl), brings their irradiance up to where the frame's lights are; the pass samples interpolates
+ * between the three receivers of their cell. */
+#define VIT_EFFECT_RECEIVERS (VIT_EFFECT_BASIS || VIT_EFFECT_RADIOSITY)
+#define VIT_EFFECT_LIVE (VIT_EFFECT_RELIGHT || VIT_EFFECT_RADIOSITY) /* their irradiance is the frame's own */
 
 /* What of it a kernel reads: buffers that the pack's effects do not call for are NULL. */
 #define RECEIVER_PARAMETERS                                                                                                    \

@@ -42,7 +42,7 @@ static inline void samples_clear(global const vit_scene *scene, uint first, glob
         L_STORE(L_U(0), accept + first);
     if (VIT_EFFECT_AREA)
         L_STORE(L_F(0), inverse_area + first);
-    if (VIT_EFFECT_BASIS)
+    if (VIT_EFFECT_RECEIVERS)
         lv3_store_planes(zero, indirect, scene->samples, first);
 }
 
@@ -117,8 +117,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-        if (VIT_EFFECT_BASIS)
-            lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_RELIGHT ? relit : receivers,
+        if (VIT_EFFECT_RECEIVERS)
+            lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_LIVE ? relit : receivers,
                                              hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position),
                              indirect, n, first);
     } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING))))

@@ -98,9 +98,9 @@ static size_t pack_rows(const vit *v, char *pixels) {
 static vit_status trace_pass(vit *v, const vit_step *step, void *user, vit_text *why) {
     trace *t = user;
     const vit_pass *pass = &vit_passes[step->pass];
-    for (uint32_t b = 0; b < B_COUNT; b++) {
+    for (uint32_t b = B_FIRST_WRITTEN; b < B_COUNT; b++) {
         uint64_t bytes = vit_buffer_bytes(b, v->pack.scene, &v->launch);
-        if (!(pass->writes >> b & 1) || bytes == 0)
+        if (!(pass->writes >> (b - B_FIRST_WRITTEN) & 1) || bytes == 0)
             continue;
         if (bytes > t->size)
             return vit_fail(why, VIT_USAGE, "trace: the scratch must hold buffer %s, %llu bytes", vit_buffer_names[b],

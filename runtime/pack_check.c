@@ -206,7 +206,7 @@ vit_status vit_pack_check_ATLS(const vit_pack *p, vit_text *why) {
 vit_status vit_pack_check_SIDE(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
     const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
-    const vit_u32 cells = s->cells > 0 ? s->cells : s->receiver_cells; /* effects ZONES and AREA, or BASIS */
+    const vit_u32 cells = s->cells > 0 ? s->cells : s->receiver_cells; /* effects ZONES and AREA, or receivers */
     for (uint64_t i = 0; cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
         const vit_u32 side = *VIT_RECORD(vit_u32, sides, i);
         const uint64_t parts = side >> VIT_SIDE_PARTS_SHIFT, first = side & VIT_SIDE_CELL;

@@ -3,7 +3,8 @@
  *
  * The bound per frame, in double: for direct light, each light's intensity over the square of the least distance that counts
  * (kernels/direct.cl: ray_offset / 16), the points of area lights over that or their discs, the sky's as they are, times the
- * BRDF's peak; for indirect light, all photons on one place, over the least effective area; all that shines by itself; summed
+ * BRDF's peak; for indirect light, all photons on one place, over the least effective area, or of live radiosity as much as
+ * if receivers saw nothing but the brightest patch; all that shines by itself; summed
  * over the copies and layers of a pixel, times the exposure. */
 #include "pack_check.h"
 
@@ -82,8 +83,9 @@ vit_status vit_pack_check_brightness(const vit_pack *p, vit_text *why) {
     for (vit_u32 frame = 0; frame < s->frames; frame++) {
         const double exposure = VIT_RECORD(vit_camera, (const vit_camera *)p->section[VIT_SECTION_CAMS], frame)->exposure;
         of_lights(p, frame, least2, &direct, &traced, &shining);
-        const double seen =
-            (direct + points) * peak + ((stored + traced) * LEAST_AREA_INVERSE + still + basis * shining) * (2.0 / PI) + own;
+        const double live = s->patches ? 2.0 * (direct + (double)s->most_reflected * VIT_MAX_REFLECT) : 0.0;
+        const double seen = (direct + points) * peak +
+                            ((stored + traced) * LEAST_AREA_INVERSE + still + basis * shining + live) * (2.0 / PI) + own;
         const double most = seen * 2.0 * s->copies * (exposure > 1.0 ? exposure : 1.0);
         if (!(most <= MOST_LIGHT))
             return vit_pack_refuse(

@@ -20,6 +20,9 @@ enum {
     MAX_PHOTONS = 1 << 25,
     MAX_RECEIVERS = 1 << 24,
     MAX_BASIS = 1 << 28,
+    MAX_GATHER = 1 << 28, /* words: a row's first and count together within 32 bits */
+    MAX_TRANSFER = 1 << 30,
+    MAX_SUMS = 2 * VIT_MAX_COLUMNS / VIT_TRANSFER_CHUNK + 1,
     MAX_SLICES = 4096,
     MAX_KEY_BITS = 30, /* 2^25 mask words, 128 MiB, for the last level of the hierarchy */
     BITS_A_LEVEL = 5,  /* one 32-bit mask word tells a node's children */
@@ -55,6 +58,12 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"basis_lights", s->basis_lights, 0, s->lights},
         {"basis_words", s->basis_words, 0, MAX_BASIS},
         {"basis_coefficients", s->basis_coefficients, 0, MAX_BASIS},
+        {"patches", s->patches, 0, VIT_MAX_COLUMNS - 16},
+        {"patch_points", s->patch_points, 0, VIT_MAX_COLUMNS - VIT_PATCH_STRIDE(s)},
+        {"gather_words", s->gather_words, 0, MAX_GATHER},
+        {"transfer_words", s->transfer_words, 0, MAX_TRANSFER},
+        {"transfer_rank", s->transfer_rank, 0, VIT_TRANSFER_MOST_RANK},
+        {"transfer_sums", s->transfer_sums, 0, MAX_SUMS},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
         {"area_samples", s->area_samples, 0, VIT_MAX_LIGHT_SAMPLES},
         {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},
@@ -70,6 +79,9 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         return vit_fail(why, VIT_BAD_INPUT, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
     if (s->receivers % VIT_BASIS_GROUP != 0)
         return vit_fail(why, VIT_BAD_INPUT, "receivers must be a multiple of %u, got %u", VIT_BASIS_GROUP, s->receivers);
+    if (s->patch_points % 16 != 0 || s->transfer_rank % VIT_TRANSFER_ROWS != 0)
+        return vit_fail(why, VIT_BAD_INPUT, "patch_points and transfer_rank must be multiples of 16, got %u and %u",
+                        s->patch_points, s->transfer_rank);
     if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64)
         return vit_fail(why, VIT_BAD_INPUT, "tile must be 8, 16, 32 or 64, got %u", s->tile);
     return VIT_OK;

@@ -47,6 +47,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"grid_low z", s->grid_low[2], small ? -FLT_MAX : 0.0f, small ? FLT_MAX : 0.0f},
         {"grid_step", s->grid_step, small ? least : 0.0f, small ? FLT_MAX / 65536 : 0.0f},
         {"contrast", s->contrast, 0.0f, 1.0f},
+        {"most_reflected", s->most_reflected, 0.0f, s->effects & VIT_BIT(TRANSFER) ? VIT_MAX_PHOTON : 0.0f},
         {"ambient red", s->ambient[0], 0.0f, VIT_MAX_RADIANCE},
         {"ambient green", s->ambient[1], 0.0f, VIT_MAX_RADIANCE},
         {"ambient blue", s->ambient[2], 0.0f, VIT_MAX_RADIANCE},
@@ -61,7 +62,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return all_zero(s->pad, 3) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
+    return all_zero(s->pad, 2) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -79,6 +80,37 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if ((s->effects & needs[i].bit) && !(s->effects & needs[i].needed))
             return vit_pack_refuse(why, "section META: effect %s without %s", needs[i].name, needs[i].needed_name);
+    return VIT_OK;
+}
+
+/* Baked places, and what makes their light. */
+static vit_status check_receivers(const vit_scene *s, vit_text *why) {
+    const vit_u64 e = s->effects;
+    const bool basis = e & VIT_BIT(BASIS), relight = e & VIT_BIT(RELIGHT), live = e & VIT_BIT(RADIOSITY),
+               transfer = e & VIT_BIT(TRANSFER), rank = e & VIT_BIT(LOW_RANK), some = basis || live;
+    if ((e & VIT_BIT(PHOTONS)) && some)
+        return vit_pack_refuse(why, "section META: effects PHOTONS and %s exclude each other", basis ? "BASIS" : "RADIOSITY");
+    if (basis && live)
+        return vit_pack_refuse(why, "section META: effects BASIS and RADIOSITY exclude each other");
+    if ((s->receivers > 0) != some || (s->receiver_cells > 0) != some || (s->receiver_splits > 0 && !some))
+        return vit_pack_refuse(why,
+                               "section META: %u receivers, %u cells and %u splits contradict the effects BASIS and RADIOSITY",
+                               s->receivers, s->receiver_cells, s->receiver_splits);
+    if ((s->basis_lights > 0) != relight || ((s->basis_words > 0 || s->basis_coefficients > 0) && !relight))
+        return vit_pack_refuse(why, "section META: %u lights, %u words and %u coefficients contradict the effect RELIGHT",
+                               s->basis_lights, s->basis_words, s->basis_coefficients);
+    const bool lights = s->live[0] || s->live[1];
+    if ((s->patches > 0) != live || (s->patch_points > 0) != live || lights != live || (s->gather_words > 0 && !live))
+        return vit_pack_refuse(why, "section META: %u patches, %u points and %u words contradict the effect RADIOSITY",
+                               s->patches, s->patch_points, s->gather_words);
+    for (vit_u32 i = 0; i < 64; i++)
+        if ((s->live[i / 32] >> i % 32 & 1) && i >= s->lights)
+            return vit_pack_refuse(why, "section META: light %u of %u is live", i, s->lights);
+    if ((s->transfer_words > 0) != transfer || (s->transfer_sums > 0) != transfer || (s->transfer_rank > 0) != rank)
+        return vit_pack_refuse(why,
+                               "section META: %u words, %u sums and a rank of %u contradict the effects TRANSFER and "
+                               "LOW_RANK",
+                               s->transfer_words, s->transfer_sums, s->transfer_rank);
     return VIT_OK;
 }
 
@@ -107,15 +139,9 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
     if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
         return vit_pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
-    if (photons && (e & VIT_BIT(BASIS)))
-        return vit_pack_refuse(why, "section META: effects PHOTONS and BASIS exclude each other");
-    const bool basis = e & VIT_BIT(BASIS), relight = e & VIT_BIT(RELIGHT);
-    if ((s->receivers > 0) != basis || (s->receiver_cells > 0) != basis || (s->receiver_splits > 0 && !basis))
-        return vit_pack_refuse(why, "section META: %u receivers, %u cells and %u splits contradict the effect BASIS",
-                               s->receivers, s->receiver_cells, s->receiver_splits);
-    if ((s->basis_lights > 0) != relight || ((s->basis_words > 0 || s->basis_coefficients > 0) && !relight))
-        return vit_pack_refuse(why, "section META: %u lights, %u words and %u coefficients contradict the effect RELIGHT",
-                               s->basis_lights, s->basis_words, s->basis_coefficients);
+    status = check_receivers(s, why);
+    if (status != VIT_OK)
+        return status;
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))
         return vit_pack_refuse(why, "section META: %u and %u points on lights contradict the effects AREA_LIGHTS and SKY_LIGHT",
                                s->area_samples, s->sky_samples);

@@ -8,7 +8,7 @@
 
 #include "passes.h"
 
-#define W(name) ((uint64_t)1 << B_##name)
+#define W(name) ((uint64_t)1 << (B_##name - B_FIRST_WRITTEN))
 #define ARGS_SURFACE B(scene), B(triangles), B(attributes), B(materials), B(textures), B(mips), B(texels)
 #define ARGS_RAYS ARGS_SURFACE, B(bvh)
 #define ARGS_WORK B(work), V(pass) /* last, in passes that count on the device */
@@ -26,6 +26,17 @@
       B(active))                                                                                                               \
     X(relight, ON(RELIGHT), FIRST, PER_RELIT, ONCE, W(relit), B(scene), V(frame), B(lights), B(basis_groups), B(basis_words),  \
       B(basis_coefficients), B(basis_frames), B(receivers), B(relit), ARGS_WORK)                                               \
+    X(patch_light, ON(RADIOSITY), FIRST, PER_POINT, ONCE, W(radiosity), ARGS_RAYS, V(frame), B(lights), B(patch_points),       \
+      B(radiosity), ARGS_WORK)                                                                                                 \
+    X(patch_mean, ON(RADIOSITY), FIRST, PER_PATCH, ONCE, W(radiosity), B(scene), B(patches), B(patch_points), B(radiosity))    \
+    X(transfer_project, ON(LOW_RANK), FIRST, PER_RANK, ONCE, W(projected), B(transfer), B(radiosity), B(projected))            \
+    X(transfer_mix, ON(LOW_RANK), FIRST, PER_MIX, ONCE, W(mixed), B(transfer), B(projected), B(mixed))                         \
+    X(transfer_partial, ON(TRANSFER), FIRST, PER_SUM, ONCE, W(sums), B(transfer), B(radiosity), B(mixed), B(sums))             \
+    X(transfer_sum, ON(TRANSFER), FIRST, PER_ROW, ONCE, W(reflected), B(transfer), B(sums), B(reflected))                      \
+    X(patch_reflect, ON(TRANSFER), FIRST, PER_COLUMN, ONCE, W(radiosity), B(scene), B(patch_points), B(reflected),             \
+      B(radiosity))                                                                                                            \
+    X(gather_patches, ON(RADIOSITY), FIRST, PER_RECEIVER, ONCE, W(relit), B(scene), B(gather_rows), B(gather_words),           \
+      B(receivers), B(radiosity), B(relit), ARGS_WORK)                                                                         \
     X(visibility, ALWAYS, EACH, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),   \
       B(hit_distance), ARGS_WORK)                                                                                              \
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \

@@ -8,7 +8,8 @@ const vit_pass vit_passes[] = {VIT_PASSES(X)};
 #undef X
 #undef B
 #undef V
-_Static_assert(B_COUNT <= VIT_MAX_BUFFERS && B_COUNT <= 64, "vitrine.h has room for every buffer, and vit_pass.writes a bit");
+_Static_assert(B_COUNT <= VIT_MAX_BUFFERS && B_COUNT - B_FIRST_WRITTEN <= 64,
+               "vitrine.h has room for every buffer, and vit_pass.writes a bit for each that is written");
 _Static_assert(sizeof vit_passes / sizeof vit_passes[0] <= VIT_MAX_PASSES, "vitrine.h has room for every pass");
 const uint32_t vit_pass_count = sizeof vit_passes / sizeof vit_passes[0];
 
@@ -168,6 +169,30 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, u
         break;
     case PER_RELIT:
         n = s->receivers / 2 / l->lanes;
+        break;
+    case PER_RECEIVER:
+        n = s->receivers;
+        break;
+    case PER_POINT:
+        n = s->patch_points / l->lanes;
+        break;
+    case PER_PATCH:
+        n = VIT_PATCH_STRIDE(s);
+        break;
+    case PER_COLUMN:
+        n = (size_t)VIT_PATCH_STRIDE(s) + s->patch_points;
+        break;
+    case PER_RANK:
+        n = (size_t)VIT_TRANSFER_COLUMN_CHUNKS(s) * s->transfer_rank / l->lanes;
+        break;
+    case PER_MIX:
+        n = 3 * (size_t)s->transfer_rank / l->lanes;
+        break;
+    case PER_SUM:
+        n = (size_t)VIT_PATCH_STRIDE(s) / l->lanes * s->transfer_sums;
+        break;
+    case PER_ROW:
+        n = VIT_PATCH_STRIDE(s) / l->lanes;
         break;
     case PER_MASK_WORD:
         n = s->mask_words > VIT_COUNTER_COUNT ? s->mask_words : VIT_COUNTER_COUNT;

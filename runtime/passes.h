@@ -15,6 +15,7 @@
 #define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
 #define ON_REACH ((uint64_t)1 << 58)  /* vit_open_info.record_reach */
 #define ALWAYS ((uint64_t)0)
+#define ON_RECEIVERS (ON(BASIS) | ON(RADIOSITY)) /* baked places at which indirect light is known */
 
 /* What the sizes of buffers and passes follow from, besides the scene. */
 typedef struct vit_launch {
@@ -55,15 +56,20 @@ typedef struct vit_launch {
     X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                            \
     X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                        \
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \
-    X(sides, ON(ZONES) | ON(AREA) | ON(BASIS), SIDE, s->triangles * (uint64_t)8)                                               \
+    X(sides, ON(ZONES) | ON(AREA) | ON_RECEIVERS, SIDE, s->triangles * (uint64_t)8)                                            \
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                          \
-    X(receiver_cells, ON(BASIS), RCEL, s->receiver_cells * sizeof(vit_receiver_cell))                                          \
-    X(receiver_splits, ON(BASIS), RSPL, s->receiver_splits * sizeof(vit_receiver_split))                                       \
-    X(receivers, ON(BASIS), RECV, s->receivers * sizeof(vit_receiver))                                                         \
+    X(receiver_cells, ON_RECEIVERS, RCEL, s->receiver_cells * sizeof(vit_receiver_cell))                                       \
+    X(receiver_splits, ON_RECEIVERS, RSPL, s->receiver_splits * sizeof(vit_receiver_split))                                    \
+    X(receivers, ON_RECEIVERS, RECV, s->receivers * sizeof(vit_receiver))                                                      \
     X(basis_groups, ON(RELIGHT), BGRP, (uint64_t)s->receivers / VIT_BASIS_GROUP * s->basis_lights * sizeof(vit_basis_group))   \
     X(basis_words, ON(RELIGHT), BWRD, (uint64_t)s->basis_words * 4)                                                            \
     X(basis_coefficients, ON(RELIGHT), BCOE, s->basis_coefficients * sizeof(vit_basis_coefficient))                            \
     X(basis_frames, ON(RELIGHT), BFRM, (uint64_t)s->frames * s->basis_lights * sizeof(vit_basis_frame))                        \
+    X(patches, ON(RADIOSITY), PATC, s->patches * sizeof(vit_patch))                                                            \
+    X(patch_points, ON(RADIOSITY), PPNT, s->patch_points * sizeof(vit_patch_point))                                            \
+    X(gather_rows, ON(RADIOSITY), GROW, s->receivers * sizeof(vit_gather_row))                                                 \
+    X(gather_words, ON(RADIOSITY), GATH, (uint64_t)s->gather_words * 4)                                                        \
+    X(transfer, ON(TRANSFER), XFER, (uint64_t)s->transfer_words * 4)                                                           \
     X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
       VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
     X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \
@@ -96,7 +102,12 @@ typedef struct vit_launch {
     X(chunk_count, ON(PHOTONS), NONE, VIT_CHUNKS * 32 * 4)                                                                     \
     X(list, ON(PHOTONS), NONE, (uint64_t)l->max_list * 4)                                                                      \
     X(buckets, ON(BUCKETS), NONE, (uint64_t)l->max_nodes *VIT_BUCKETS_OF(l) * 16)                                              \
-    X(relit, ON(RELIGHT), NONE, (uint64_t)s->receivers * 16)                                                                   \
+    X(relit, ON(RELIGHT) | ON(RADIOSITY), NONE, (uint64_t)s->receivers * 16)                                                   \
+    X(radiosity, ON(RADIOSITY), NONE, ((uint64_t)VIT_PATCH_STRIDE(s) + s->patch_points) * 16)                                  \
+    X(projected, ON(LOW_RANK), NONE, (uint64_t)VIT_TRANSFER_COLUMN_CHUNKS(s) * s->transfer_rank * 12)                          \
+    X(mixed, ON(LOW_RANK), NONE, (uint64_t)s->transfer_rank * 12)                                                              \
+    X(sums, ON(TRANSFER), NONE, (uint64_t)s->transfer_sums *VIT_PATCH_STRIDE(s) * 12)                                          \
+    X(reflected, ON(TRANSFER), NONE, (uint64_t)VIT_PATCH_STRIDE(s) * 12)                                                       \
     X(coarse, ON(SPARSE), NONE, VIT_COARSE(s, l) * 36)                                                                         \
     X(flags, ON(SPARSE), NONE, s->samples / 16 * 4)                                                                            \
     X(indirect, ON(INDIRECT), NONE, (uint64_t)s->samples * 12)                                                                 \
@@ -108,6 +119,9 @@ typedef struct vit_launch {
     X(framebuffer, ALWAYS, NONE, (((uint64_t)s->height - 1) * l->pitch + s->width) * vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT
+#define B_FIRST_WRITTEN B_hit_triangle /* those before it are sections */
+/* Chunks of columns of the transfer matrix. */
+#define VIT_TRANSFER_COLUMN_CHUNKS(s) ((VIT_PATCH_STRIDE(s) + VIT_TRANSFER_CHUNK - 1) / VIT_TRANSFER_CHUNK)
 
 typedef enum vit_buffer {
 #define X(name, when, section, bytes) B_##name,
@@ -138,7 +152,15 @@ typedef enum vit_extent {
     PER_RUN,    /* ceil(samples / run) */
     PER_PATH,   /* paths / lanes */
     PER_PHOTON,
-    PER_RELIT, /* receivers / (2 * lanes) */
+    PER_RELIT,    /* receivers / (2 * lanes) */
+    PER_RECEIVER, /* receivers */
+    PER_POINT,    /* patch_points / lanes */
+    PER_PATCH,    /* VIT_PATCH_STRIDE */
+    PER_COLUMN,   /* VIT_PATCH_STRIDE + patch_points */
+    PER_RANK,     /* transfer_rank / lanes, of each chunk of columns */
+    PER_MIX,      /* 3 * transfer_rank / lanes */
+    PER_SUM,      /* VIT_PATCH_STRIDE / lanes, of each of transfer_sums */
+    PER_ROW,      /* VIT_PATCH_STRIDE / lanes */
     PER_MASK_WORD,
     PER_LEVEL_NODE, /* nodes of the level, at most */
     PER_PIXEL,
@@ -170,7 +192,7 @@ typedef struct vit_pass {
     vit_rounds rounds;
     vit_extent extent;
     vit_repeat repeat;
-    uint64_t writes;            /* bits of vit_buffer */
+    uint64_t writes;            /* bits of vit_buffer, B_FIRST_WRITTEN's the lowest */
     uint8_t args[VIT_MAX_ARGS]; /* vit_buffer, up to V_END; a buffer that is not called for is passed as NULL, but
                                  * WORK at the end is no parameter of kernels that do not count */
 } vit_pass;

@@ -36,6 +36,15 @@
     X(splat_buckets,                                                                                                           \
       (4 + 28) * w[VIT_WORK_node_tests] + (BOX + 4 + z->bucket) * (z->nodes - z->inner) + (12 + 16 + 16) * w[VIT_WORK_pairs])  \
     X(relight, z->relit + 2 * w[VIT_WORK_evaluations])                                                                         \
+    X(patch_light, (sizeof(vit_patch_point) + 16) * z->points + z->lights)                                                     \
+    X(patch_mean, sizeof(vit_patch) * z->patches + (4 + 16) * z->points + 16 * z->stride)                                      \
+    X(transfer_project, z->right + 16 * z->stride + z->projected)                                                              \
+    X(transfer_mix, z->mix + z->projected + z->mixed)                                                                          \
+    X(transfer_partial, z->coded + 16 * z->stride + z->mixed + z->sums)                                                        \
+    X(transfer_sum, z->sums + 12 * z->stride)                                                                                  \
+    X(patch_reflect, 12 * z->stride + (4 + 12) * z->points + 2 * 16 * (z->stride + z->points))                                 \
+    X(gather_patches,                                                                                                          \
+      (sizeof(vit_gather_row) + sizeof(vit_receiver) + 16) * z->receivers + (4 + 16) * w[VIT_WORK_evaluations])                \
     X(estimate_all, (4 + z->position + 4 + z->baked + 12) * z->samples + z->evaluation * w[VIT_WORK_evaluations])              \
     X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
     X(interpolate, (4 + z->position + 4 + z->lamps + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)            \
@@ -72,6 +81,8 @@ typedef struct sizes {
     uint64_t skylight;           /* bytes per sample: of the sky's irradiance, and of what the lobe reflects of it */
     uint64_t received, indirect; /* bytes: of side, cell and receivers that a hit looks up, per sample of the light written */
     uint64_t relit;              /* bytes: of all receivers, read and written, and of what is read of a frame's lights */
+    uint64_t points, patches, stride, receivers;        /* numbers of records */
+    uint64_t right, mix, coded, projected, mixed, sums; /* bytes: of the transfer matrix's parts, and of what is between */
     uint64_t zones, baked,
         cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
@@ -104,6 +115,21 @@ static uint64_t least(uint64_t a, uint64_t b) {
     return a < b ? a : b;
 }
 
+/* Live radiosity. Of the coded matrix what is not of low rank is read once, and of that its left part. */
+static void of_patches(sizes *z, const vit_scene *s) {
+    const uint64_t rank = s->transfer_rank;
+    z->points = s->patch_points;
+    z->patches = s->patches;
+    z->stride = VIT_PATCH_STRIDE(s);
+    z->receivers = s->receivers;
+    z->right = rank ? (rank / 2 + 1) * 4 * z->stride : 0;
+    z->mix = 3 * rank * rank * 4;
+    z->coded = (uint64_t)s->transfer_words * 4 - z->right - z->mix;
+    z->projected = (uint64_t)VIT_TRANSFER_COLUMN_CHUNKS(s) * rank * 12;
+    z->mixed = rank * 12;
+    z->sums = (uint64_t)s->transfer_sums * z->stride * 12;
+}
+
 static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c) {
     sizes z = {.samples = s->samples,
                .pixels = (uint64_t)s->width * s->height,
@@ -130,12 +156,13 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.skylight = z.specular ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
-    z.indirect = l->effects & ON(BASIS) ? 12 : 0;
-    z.received = l->effects & ON(BASIS) ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
+    z.indirect = l->effects & ON_RECEIVERS ? 12 : 0;
+    z.received = l->effects & ON_RECEIVERS ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
     z.corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX_BYTES(z.zones) / 8;
     z.relit = s->receivers * (sizeof(vit_receiver) + 16) + s->basis_lights * sizeof(vit_basis_frame) +
               s->receivers / VIT_BASIS_GROUP * s->basis_lights * sizeof(vit_basis_group);
+    of_patches(&z, s);
     z.evaluation = l->effects & ON(LIST) ? 4 + sizeof(vit_photon) : 16 + z.corner;
     if ((l->effects & ON(PHOTONS)) && c[VIT_COUNTER_nodes] > 0) {
         z.nodes = least(c[VIT_COUNTER_nodes], l->max_nodes);

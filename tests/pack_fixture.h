@@ -1,8 +1,8 @@
 /* A small valid scene as plain arrays: a cube seen from inside, two materials, a 4 x 4 texture with its mips, a still spot
  * light whose photons are baked and a moving point light whose photons are traced, a point a set on area lights and in the sky,
  * which is a picture, zones and areas, gloss, mirror, glass, two copies, two frames. Photons and baked irradiance exclude each
- * other: fixture_make_basis() has receivers, splits and a basis for both lights in the photons' place. Every float is exact in
- * binary, so the packs have the same bytes with every compiler. */
+ * other: fixture_make_basis() has receivers, splits and a basis for both lights in the photons' place, fixture_make_live()
+ * patches in the basis'. Every float is exact in binary, so the packs have the same bytes with every compiler. */
 #ifndef VIT_TESTS_PACK_FIXTURE_H
 #define VIT_TESTS_PACK_FIXTURE_H
 
@@ -23,6 +23,15 @@ enum {
     FIXTURE_WORDS = VIT_BASIS_RANK * VIT_BASIS_GROUP / 2,
     FIXTURE_KNOTS = 3, /* of the second light; the first has one less */
     FIXTURE_COEFFICIENTS = VIT_BASIS_RANK * FIXTURE_KNOTS,
+    FIXTURE_PATCHES = 20,
+    FIXTURE_STRIDE = 32,
+    FIXTURE_PATCH_POINTS = 48, /* two a patch, and eight to fill up */
+    FIXTURE_COLUMNS = FIXTURE_STRIDE + FIXTURE_PATCH_POINTS,
+    FIXTURE_SEEN = 3, /* of these by each second receiver */
+    FIXTURE_GATHER = FIXTURE_RECEIVERS / 2 * FIXTURE_SEEN,
+    FIXTURE_RANK = 16,
+    FIXTURE_SPARSE = 96, /* words: a pair of slots in each of two panels */
+    FIXTURE_TRANSFER = 20 + 3 * 32 + 4 + 32 + FIXTURE_SPARSE + 2 * 256 + 96 + 32 + 3 * 256,
     FIXTURE_SKY = 2,
     FIXTURE_POINTS = 2 * VIT_PATTERNS
 };
@@ -49,6 +58,11 @@ typedef struct pack_fixture {
     vit_u32 words[FIXTURE_WORDS];
     vit_basis_coefficient coefficients[FIXTURE_COEFFICIENTS];
     vit_basis_frame basis_frames[FIXTURE_FRAMES * FIXTURE_LIGHTS];
+    vit_patch patches[FIXTURE_PATCHES];
+    vit_patch_point patch_points[FIXTURE_PATCH_POINTS];
+    vit_gather_row gather_rows[FIXTURE_RECEIVERS];
+    vit_u32 gather_words[FIXTURE_GATHER];
+    vit_u32 transfer[FIXTURE_TRANSFER];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -288,6 +302,72 @@ static inline void fixture_make_basis(pack_fixture *f) {
     vit_pack_derive(&f->scene, NULL);
 }
 
+static inline vit_u32 fixture_bits(float x) {
+    vit_u32 bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Two slots of each place of the first panel, one of the second's; a part of rank 16. */
+static inline void fixture_transfer(pack_fixture *f) {
+    vit_transfer h;
+    (void)vit_transfer_lay_out(VIT_TRANSFER_SPARSE_LOW_RANK, FIXTURE_PATCHES, FIXTURE_RANK, FIXTURE_SPARSE, &h);
+    h.sparse_chunks = 1;
+    for (vit_u32 i = h.scale; i < h.panels; i++)
+        f->transfer[i] = fixture_bits(0x1p-16f);
+    for (vit_u32 p = 0; p < 2; p++) {
+        f->transfer[h.panels + 2 * p] = h.sparse + 48 * p;
+        f->transfer[h.panels + 2 * p + 1] = 2 - p;
+    }
+    for (vit_u32 i = 0; i < FIXTURE_STRIDE; i++) {
+        vit_u32 *pair = f->transfer + h.sparse + i / 16 * 48 + i % 16;
+        f->transfer[h.places + i] = FIXTURE_STRIDE - 1 - i;
+        pair[0] = i % FIXTURE_PATCHES | (i < 16 ? (i + 4) << 16 : 0);
+        pair[16] = 0x12345678u;
+        pair[32] = i < 16 ? 0x87654321u : 0;
+    }
+    for (vit_u32 i = h.left; i < h.words; i++)
+        f->transfer[i] = (i >= h.left_scale && i < h.right) || i >= h.right_scale ? fixture_bits(0x1p-12f) : i * 0x9e3779b1u;
+    memcpy(f->transfer, &h, sizeof h);
+}
+
+static inline void fixture_patches(pack_fixture *f) {
+    for (vit_u32 i = 0; i < FIXTURE_PATCHES; i++)
+        f->patches[i] = (vit_patch){.first = 2 * i, .end = 2 * i + 2};
+    for (vit_u32 i = 0; i < FIXTURE_PATCH_POINTS; i++)
+        f->patch_points[i] = i < 2 * FIXTURE_PATCHES ? (vit_patch_point){.position = {0.0625f * (float)(i % 16), -0.75f, 0.25f},
+                                                                         .patch = i / 2,
+                                                                         .normal = {0, 1, 0},
+                                                                         .weight = i % 2 ? 0.75f : 0.25f,
+                                                                         .albedo = {0.5f, 0.25f, 1},
+                                                                         .reflect = {1, 0.5f, VIT_MAX_REFLECT}}
+                                                     : (vit_patch_point){.normal = {0, 0, -1}};
+    for (vit_u32 i = 0; i < FIXTURE_RECEIVERS; i++)
+        f->gather_rows[i] =
+            (vit_gather_row){.first = (i + 1) / 2 * FIXTURE_SEEN, .count = i % 2 ? 0 : FIXTURE_SEEN, .scale = 0x1p-18f};
+    for (vit_u32 i = 0; i < FIXTURE_GATHER; i++)
+        f->gather_words[i] = (65535 - i) << 16 | i % FIXTURE_COLUMNS;
+}
+
+/* fixture_make_basis() with live radiosity of the second light for the basis. */
+static inline void fixture_make_live(pack_fixture *f) {
+    fixture_make_basis(f);
+    f->scene.effects =
+        (f->scene.effects & ~vit_effects_upon(VIT_BIT(BASIS))) | VIT_BIT(RADIOSITY) | VIT_BIT(TRANSFER) | VIT_BIT(LOW_RANK);
+    f->scene.basis_lights = f->scene.basis_words = f->scene.basis_coefficients = 0;
+    f->scene.patches = FIXTURE_PATCHES;
+    f->scene.patch_points = FIXTURE_PATCH_POINTS;
+    f->scene.gather_words = FIXTURE_GATHER;
+    f->scene.live[0] = 2;
+    f->scene.transfer_words = FIXTURE_TRANSFER;
+    f->scene.transfer_rank = FIXTURE_RANK;
+    f->scene.transfer_sums = 2;
+    f->scene.most_reflected = 0x1p40f;
+    fixture_patches(f);
+    fixture_transfer(f);
+    vit_pack_derive(&f->scene, NULL);
+}
+
 /* Replaces the cube by `depth` + 1 triangles side by side and a tree that is a chain of `depth` inner nodes (1..95). */
 static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
     fixture_make(f);
@@ -313,14 +393,16 @@ static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
 static inline pack_sections fixture_sections(const pack_fixture *f) {
     return (pack_sections){
         .data = {
-            [VIT_SECTION_META] = &f->scene,    [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
-            [VIT_SECTION_GEOM] = f->triangles, [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
-            [VIT_SECTION_MATL] = f->materials, [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
-            [VIT_SECTION_ATLS] = f->texels,    [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
-            [VIT_SECTION_EMIT] = f->emitters,  [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
-            [VIT_SECTION_RSPL] = f->splits,    [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
-            [VIT_SECTION_BWRD] = f->words,     [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
-            [VIT_SECTION_PHOT] = f->photons,   [VIT_SECTION_GOLD] = f->golds,
+            [VIT_SECTION_META] = &f->scene,       [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
+            [VIT_SECTION_GEOM] = f->triangles,    [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
+            [VIT_SECTION_MATL] = f->materials,    [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
+            [VIT_SECTION_ATLS] = f->texels,       [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
+            [VIT_SECTION_EMIT] = f->emitters,     [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
+            [VIT_SECTION_RSPL] = f->splits,       [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
+            [VIT_SECTION_BWRD] = f->words,        [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
+            [VIT_SECTION_PATC] = f->patches,      [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
+            [VIT_SECTION_GATH] = f->gather_words, [VIT_SECTION_XFER] = f->transfer,     [VIT_SECTION_PHOT] = f->photons,
+            [VIT_SECTION_GOLD] = f->golds,
         }};
 }
 

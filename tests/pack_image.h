@@ -40,6 +40,11 @@ typedef struct image {
     vit_u32 *words;
     vit_basis_coefficient *coefficients;
     vit_basis_frame *basis_frames;
+    vit_patch *patches;
+    vit_patch_point *patch_points;
+    vit_gather_row *gather_rows;
+    vit_u32 *gather_words;
+    vit_u32 *transfer;
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -74,16 +79,21 @@ static inline image image_of(const pack_fixture *f) {
     im.words = section(&im, VIT_SECTION_BWRD);
     im.coefficients = section(&im, VIT_SECTION_BCOE);
     im.basis_frames = section(&im, VIT_SECTION_BFRM);
+    im.patches = section(&im, VIT_SECTION_PATC);
+    im.patch_points = section(&im, VIT_SECTION_PPNT);
+    im.gather_rows = section(&im, VIT_SECTION_GROW);
+    im.gather_words = section(&im, VIT_SECTION_GATH);
+    im.transfer = section(&im, VIT_SECTION_XFER);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;
 }
 
 /* The fixtures: between them no section is empty. */
-typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_KINDS } fixture_kind;
+typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_LIVE, FIXTURE_KINDS } fixture_kind;
 
 static inline void fixture_make_kind(pack_fixture *f, fixture_kind kind) {
-    kind == FIXTURE_BASIS ? fixture_make_basis(f) : fixture_make(f);
+    kind == FIXTURE_LIVE ? fixture_make_live(f) : kind == FIXTURE_BASIS ? fixture_make_basis(f) : fixture_make(f);
 }
 
 static inline image valid_image_of(fixture_kind kind) {

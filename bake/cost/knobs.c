@@ -77,7 +77,9 @@ static bool is_others(int k, uint64_t effects) {
 
 /* As scene_quality_text(), without what has no effect. */
 static void text_of_effect(const scene_quality *q, char *text, size_t size) {
-    const uint64_t maker = q->indirect == INDIRECT_BASIS ? VIT_BIT(BASIS) : VIT_BIT(PHOTONS);
+    const uint64_t maker = q->indirect == INDIRECT_BASIS       ? VIT_BIT(BASIS)
+                           : q->indirect == INDIRECT_RADIOSITY ? VIT_BIT(RADIOSITY)
+                                                               : VIT_BIT(PHOTONS);
     scene_quality plain = *q;
     size_t used = 0;
     if (plan_leaves_area_out(q))

@@ -133,6 +133,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->area_lights);
     cells_free(&packed->cells);
     baked_free(&packed->baked);
+    live_free(&packed->live);
     plan_free(&packed->plan);
     geometry_free(&packed->coarse.geometry);
     bvh_free(&packed->coarse.bvh);

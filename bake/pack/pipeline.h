@@ -9,6 +9,7 @@
 #include "pack/pack_write.h"
 #include "pack/planner.h"
 #include "radiosity/kept.h"
+#include "radiosity/live.h"
 #include "common/progress.h"
 #include "geometry/quantise.h"
 #include "dark_sides/dark_sides.h"
@@ -71,7 +72,8 @@ typedef struct pipeline_packed {
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
-    baked baked;                   /* indirect light; none without the effect BASIS */
+    baked baked;                   /* indirect light; none without the effects BASIS and RADIOSITY */
+    live live;                     /* none without the effect RADIOSITY */
     const photon_guiding *guiding; /* the pipeline's; NULL: photons are not guided */
     double guided_gain;            /* how many even paths a guided one stands for, where paths are worth something */
     vit_light_sample *area_lights; /* section EMIT */

@@ -157,13 +157,24 @@ static uint64_t effects_of_basis(const scene *s, const tracks *t, const plan *p)
     return e;
 }
 
+/* What is still needs no more than receivers. */
+static uint64_t effects_of_radiosity(const scene *s, const tracks *t, const plan *p) {
+    const uint64_t e = effects_of_basis(s, t, p);
+    if (!(e & VIT_BIT(RELIGHT)))
+        return e;
+    const uint64_t coded = s->quality.codec == VIT_TRANSFER_SPARSE_LOW_RANK ? VIT_BIT(LOW_RANK) : 0;
+    return VIT_BIT(RADIOSITY) | (s->quality.bounces > 2 ? VIT_BIT(TRANSFER) | coded : 0);
+}
+
 /* What makes indirect light, and what any maker of it calls for. */
 static uint64_t effects_of_indirect(const scene *s, const tracks *t, const plan *p) {
-    uint64_t e = p->indirect == INDIRECT_BASIS ? effects_of_basis(s, t, p) : effects_of_photons(s, p);
+    uint64_t e = p->indirect == INDIRECT_BASIS       ? effects_of_basis(s, t, p)
+                 : p->indirect == INDIRECT_RADIOSITY ? effects_of_radiosity(s, t, p)
+                                                     : effects_of_photons(s, p);
     if (e == 0)
         return 0;
     e |= VIT_BIT(INDIRECT);
-    if (e & VIT_BIT(BASIS)) /* so cheap that every sample has its own */
+    if (e & (VIT_BIT(BASIS) | VIT_BIT(RADIOSITY))) /* so cheap that every sample has its own */
         return e;
     e |= s->quality.indirect_samples > 1 ? VIT_BIT(SPARSE) : 0;
     e |= s->quality.indirect_samples == 16 ? VIT_BIT(SPARSE_16) : 0;
@@ -260,8 +271,8 @@ static vit_status plan_lights(const plan_input *in, plan *p, vit_text *why) {
     return status == VIT_OK ? share_paths(in, NULL, p, why) : status;
 }
 
-/* Lights that would have photon paths have their light baked: who they are is all that is left of the paths. */
-static void plan_basis(const plan_input *in, plan *p) {
+/* Lights that would have photon paths give receivers their light: who they are is all that is left of the paths. */
+static void plan_receivers(const plan_input *in, plan *p) {
     const uint32_t lights = in->tracks->light_count;
     for (uint32_t i = 0; i < lights; i++)
         p->baked_paths[i] += in->tracks->lights[i].path_count;
@@ -301,9 +312,9 @@ static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
     p->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     if (!has_paths(in->tracks, p)) /* its sources were left out */
-        effects_drop(c, VIT_BIT(PHOTONS) | VIT_BIT(BASIS));
-    if (c->effects & VIT_BIT(BASIS))
-        plan_basis(in, p);
+        effects_drop(c, vit_indirect_makers());
+    if (c->effects & (VIT_BIT(BASIS) | VIT_BIT(RADIOSITY)))
+        plan_receivers(in, p);
     return VIT_OK;
 }
 

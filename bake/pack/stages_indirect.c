@@ -1,9 +1,12 @@
-/* The stage of baked indirect light: receivers and the basis of lights that move. */
+/* The stage of indirect light at baked places: receivers, and a basis or live radiosity for lights that move. */
 #include "common/fail.h"
 #include "light/panes.h"
 #include "pack/stages.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#define ALL_REFLECTIONS 1024.0 /* as many times direct light as all of them together can be: transfer_matrix_make() */
 
 /* Sources that stay as they are, and lights that do not. */
 static uint32_t sources(const bake *b, photons_light *still, uint32_t *moving, uint32_t *moving_count) {
@@ -66,14 +69,95 @@ static vit_status find_or_get(const bake *b, const photon_scene *s, baked_input 
     return status;
 }
 
+/* Radiosity of any patch by reflections, at most: as much as direct light could be, for each of them. Direct light is at most
+ * what it is at the least distance that counts (kernels/direct.cl). */
+static float most_reflected(const bake *b, const uint32_t *moving, uint32_t moving_count) {
+    const pipeline_packed *out = b->out;
+    const double least = (double)out->geometry->ray_offset * 0.0625;
+    double most = 0.0;
+    for (uint32_t f = 0; f < (uint32_t)b->scene.frames; f++) {
+        double sum = 0.0;
+        for (uint32_t i = 0; i < moving_count; i++) {
+            const vit_light *l = &out->tracks.lights[(size_t)f * out->tracks.light_count + moving[i]];
+            const bool even = l->kind == VIT_LIGHT_DIRECTIONAL || l->falloff == VIT_FALLOFF_WINDOW;
+            const double power = (double)float_max(float_max(l->intensity[0], l->intensity[1]), l->intensity[2]);
+            sum += even ? power : power / (least * least);
+        }
+        most = sum > most ? sum : most;
+    }
+    most *= out->plan.reflections == TRANSPORT_CONVERGED ? ALL_REFLECTIONS : out->plan.reflections;
+    return most < (double)VIT_MAX_PHOTON ? (float)most : VIT_MAX_PHOTON;
+}
+
+/* Of light that is not. */
+static vit_status find_live(bake *b, const photon_scene *s, const uint32_t *moving, uint32_t moving_count, vit_text *why) {
+    pipeline_packed *out = b->out;
+    vit_scene *c = &out->plan.scene;
+    const scene_quality *q = &b->scene.quality;
+    photon_rays rays;
+    if (!photon_rays_open(s, b->p->threads, &rays))
+        return bake_fail(why, VIT_FAILED, "Embree fails");
+    const live_input in = {.rays = &rays,
+                           .geometry = out->geometry,
+                           .tracks = &out->tracks,
+                           .frames = (uint32_t)b->scene.frames,
+                           .width = c->width,
+                           .height = c->height,
+                           .receivers = out->baked.receivers.receivers,
+                           .receiver_count = out->baked.placed,
+                           .rows = out->baked.receivers.count,
+                           .patches = (uint32_t)q->patches,
+                           .points = (uint32_t)q->patch_points,
+                           .codec = (uint32_t)q->codec,
+                           .receiver_rays = (uint32_t)q->receiver_rays,
+                           .reflections = out->plan.reflections,
+                           .threads = b->p->threads,
+                           .progress = stages_step,
+                           .user = b->p->progress};
+    progress_stage(b->p->progress, "light between patches");
+    const vit_status status = live_find(&in, &out->live, why);
+    photon_rays_close(&rays);
+    if (status != VIT_OK)
+        return status;
+    if (out->live.patch_count == 0) { /* nothing reflects: what is still has to do */
+        c->effects = (c->effects & ~vit_effects_upon(VIT_BIT(RADIOSITY))) | VIT_BIT(BASIS);
+        return VIT_OK;
+    }
+    c->patches = out->live.patch_count;
+    c->patch_points = out->live.point_count;
+    c->gather_words = out->live.word_count;
+    for (uint32_t i = 0; i < moving_count; i++)
+        c->live[moving[i] / 32] |= 1u << moving[i] % 32;
+    if (out->live.transfer.count > 0) {
+        vit_transfer h;
+        memcpy(&h, out->live.transfer.words, sizeof h);
+        c->transfer_words = h.words;
+        c->transfer_rank = h.rank;
+        c->transfer_sums = h.dense_chunks + h.sparse_chunks + (h.rank > 0);
+        c->most_reflected = most_reflected(b, moving, moving_count);
+    }
+    return VIT_OK;
+}
+
+/* What META says of what is baked. */
+static void count_baked(const baked *b, vit_scene *c) {
+    c->receivers = b->receivers.count;
+    c->receiver_cells = b->receivers.cell_count;
+    c->receiver_splits = b->receivers.split_count;
+    c->basis_lights = b->lights;
+    c->basis_words = b->basis.word_count;
+    c->basis_coefficients = b->basis.coefficient_count;
+}
+
 vit_status stage_indirect(bake *b, vit_text *why) {
     const pipeline *p = b->p;
     pipeline_packed *out = b->out;
     vit_scene *c = &out->plan.scene;
-    if (!(c->effects & VIT_BIT(BASIS)))
+    const bool is_live = c->effects & VIT_BIT(RADIOSITY);
+    if (!is_live && !(c->effects & VIT_BIT(BASIS)))
         return VIT_OK;
     photons_light *still = calloc(out->tracks.light_count + 2u, sizeof *still);
-    uint32_t *moving = calloc(out->tracks.light_count + 1u, sizeof *moving);
+    uint32_t *moving = calloc(out->tracks.light_count + 1u, sizeof *moving), moving_count = 0;
     const photon_scene s = scene_of_pack(b);
     baked_input in = {.geometry = out->geometry,
                       .tracks = &out->tracks,
@@ -93,19 +177,16 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .progress = stages_step,
                       .user = p->progress};
     if (still && moving)
-        in.still_count = sources(b, still, moving, &in.moving_count);
+        in.still_count = sources(b, still, moving, &moving_count);
+    in.moving_count = is_live ? 0 : moving_count;
     const double began = progress_now();
-    const vit_status status = still && moving ? find_or_get(b, &s, &in, why) : out_of_memory(why);
+    vit_status status = still && moving ? find_or_get(b, &s, &in, why) : out_of_memory(why);
     out->seconds += fmax(out->baked.seconds - (progress_now() - began), 0);
+    if (status == VIT_OK)
+        count_baked(&out->baked, c);
+    if (status == VIT_OK && is_live)
+        status = find_live(b, &s, moving, moving_count, why);
     free(still);
     free(moving);
-    if (status != VIT_OK)
-        return status;
-    c->receivers = out->baked.receivers.count;
-    c->receiver_cells = out->baked.receivers.cell_count;
-    c->receiver_splits = out->baked.receivers.split_count;
-    c->basis_lights = out->baked.lights;
-    c->basis_words = out->baked.basis.word_count;
-    c->basis_coefficients = out->baked.basis.coefficient_count;
-    return VIT_OK;
+    return status;
 }

@@ -88,6 +88,7 @@ static vit_status keep(const baked_input *in, const states *s, const float *irra
                            .lights = in->moving_count,
                            .error = in->error,
                            .threads = in->threads};
+    out->placed = count;
     out->receivers.count = padded;
     return basis_make(&b, &out->basis, why);
 }
@@ -127,7 +128,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
     if (status == VIT_OK)
         status = make_states(in, &s, why);
     if (status == VIT_OK) {
-        irradiance = malloc(((size_t)out->receivers.count * 3u * s.count + 1u) * sizeof *irradiance);
+        irradiance = calloc((size_t)out->receivers.count * 3u * s.count + 1u, sizeof *irradiance);
         const uint32_t wanted = CELLS_PER_RECEIVER * out->receivers.count, of_light = wanted < CELLS_LEAST  ? CELLS_LEAST
                                                                                       : wanted > CELLS_MOST ? CELLS_MOST
                                                                                                             : wanted;
@@ -145,8 +146,10 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .threads = in->threads,
                                    .progress = in->progress,
                                    .user = in->user};
-        status = irradiance ? transport_find(&t, irradiance, &out->report, why)
-                            : bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+        if (!irradiance)
+            status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+        else if (in->still_count + in->moving_count > 0)
+            status = transport_find(&t, irradiance, &out->report, why);
     }
     if (status == VIT_OK && irradiance)
         status = keep(in, &s, irradiance, out, why);

@@ -28,7 +28,8 @@ typedef struct baked_input {
 } baked_input;
 
 typedef struct baked {
-    receivers receivers; /* its count is a multiple of VIT_BASIS_GROUP: the last do not matter */
+    receivers receivers; /* its count is a multiple of VIT_BASIS_GROUP: the last do not matter, */
+    uint32_t placed;     /* and receivers.receivers has but these */
     vit_receiver *still; /* section RECV */
     basis basis;
     vit_basis_frame *frames; /* section BFRM: frame x light */

@@ -8,15 +8,13 @@
 #define CODEC_KEEP_BC1 0.04                                /* of the entries, that are kept exactly (Shcherbakov 2017) */
 #define CODEC_KEEP 0.06                                    /* that are kept beside the part of low rank */
 #define CODEC_RANK(patches) ((patches) < 2048 ? 48u : 64u) /* of that part */
-#define CODEC_RANK_MOST 512u
-#define CODEC_PATCHES_MOST 65536u
 
 typedef struct codec_input {
     const transfer_matrix *matrix;
     const float *area; /* count: what a row's error weighs; NULL: all the same */
     uint32_t codec;    /* VIT_TRANSFER_* */
     double keep;       /* BC1, SPARSE_LOW_RANK: share of the entries that is kept apart; 0: none, < 0: as above */
-    uint32_t rank;     /* SPARSE_LOW_RANK: a multiple of 16, or 0 for CODEC_RANK(); at most CODEC_RANK_MOST */
+    uint32_t rank;     /* SPARSE_LOW_RANK: a multiple of 16, or 0 for CODEC_RANK(); at most VIT_TRANSFER_MOST_RANK */
     unsigned threads;  /* 0: all cores; changes no byte */
 } codec_input;
 
@@ -30,10 +28,12 @@ typedef struct coded {
  * out of memory. On failure nothing is left to free. */
 vit_status codec_encode(const codec_input *in, coded *out, vit_text *why);
 void coded_free(coded *c);
-/* VIT_BAD_INPUT: the words are no coded matrix, or a part is not where it belongs: nothing below may be called then. */
-vit_status codec_check(const uint32_t *words, size_t count, vit_text *why);
-
-/* Row `row` of a channel of a good code: `patches` floats. */
+/* Rows and columns of a code. */
+static inline uint32_t codec_stride(uint32_t patches) {
+    return (patches + VIT_TRANSFER_ROWS - 1) / VIT_TRANSFER_ROWS * VIT_TRANSFER_ROWS;
+}
+/* Below, words are a good code: vit_transfer_check() of vitrine_pack.h. */
+/* Row `row` of a channel: `patches` floats. */
 void codec_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
 /* y = S x, in the order of operations that transfer_product.clh states, to the bit; y may be a little below 0. x: four numbers
  * a column, the last of them not looked at, 0 from column `patches` on; y: a plane a channel; both for `stride` patches.

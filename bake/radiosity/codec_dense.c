@@ -76,7 +76,7 @@ static void pack_row(const packing *p, uint32_t i, uint32_t c, const float *row,
 static void pack_panel(void *user, uint32_t panel) {
     const packing *p = user;
     const uint32_t stride = header_of(p->words)->stride;
-    float row[CODEC_PATCHES_MOST];
+    float row[VIT_TRANSFER_MOST_PATCHES];
     for (uint32_t i = panel * PANEL; i < (panel + 1) * PANEL; i++)
         for (uint32_t c = 0; c < TRANSFER_CHANNELS; c++) {
             for (uint32_t j = 0; j < stride; j++)

@@ -21,7 +21,7 @@ static void judge_row(void *user, uint32_t i) {
     const judging *g = user;
     const size_t n = g->in->matrix->count;
     row_error e = {0};
-    float row[CODEC_PATCHES_MOST];
+    float row[VIT_TRANSFER_MOST_PATCHES];
     for (uint32_t c = 0; c < TRANSFER_CHANNELS; c++) {
         const float *right = g->in->matrix->s[c] + i * n;
         codec_row(g->words, i, c, row);

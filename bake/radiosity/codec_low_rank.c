@@ -78,7 +78,7 @@ static void transposed_times(void *user, uint32_t block) {
 /* image = (a channel of what is not kept) right, a row. */
 static void times_channel(void *user, uint32_t i) {
     const factoring *f = user;
-    float row[CODEC_PATCHES_MOST], *to = f->image + (size_t)i * f->rank;
+    float row[VIT_TRANSFER_MOST_PATCHES], *to = f->image + (size_t)i * f->rank;
     row_left(f, i, f->channel, row);
     memset(to, 0, f->rank * sizeof *to);
     for (uint32_t j = 0; j < f->n; j++)
@@ -140,7 +140,7 @@ static float quantised(const float *row, uint32_t rank, int32_t *out) {
 
 static void write_sides(const factoring *f, const sparse_shape *shape, uint32_t *words) {
     const vit_transfer *h = header_of(words);
-    int32_t q[CODEC_RANK_MOST];
+    int32_t q[VIT_TRANSFER_MOST_RANK];
     for (uint32_t i = 0; i < f->n; i++) {
         const uint32_t place = shape->place[i], panel = place / PANEL, r = place % PANEL;
         float scale = quantised(f->left + (size_t)i * f->rank, f->rank, q);
@@ -215,7 +215,7 @@ static float right_at(const uint32_t *words, uint32_t column, uint32_t k) {
 void codec_low_rank_mixed(const uint32_t *words, const float *x, float *mixed) {
     const vit_transfer *h = header_of(words);
     for (uint32_t c = 0; c < 3; c++) {
-        float z[CODEC_RANK_MOST];
+        float z[VIT_TRANSFER_MOST_RANK];
         for (uint32_t k = 0; k < h->rank; k++) {
             z[k] = 0.0f;
             for (uint32_t first = 0; first < h->stride; first += VIT_TRANSFER_CHUNK) {
@@ -247,7 +247,7 @@ void codec_low_rank_row(const uint32_t *words, uint32_t row, uint32_t channel, f
     const vit_transfer *h = header_of(words);
     const uint32_t place = words[h->places + row], rank = h->rank;
     const double scale = (double)bits_float(words[h->left_scale + (place / PANEL * 3 + channel) * PANEL + place % PANEL]);
-    double mixed[CODEC_RANK_MOST] = {0};
+    double mixed[VIT_TRANSFER_MOST_RANK] = {0};
     for (uint32_t m = 0; m < rank; m++)
         for (uint32_t k = 0; k < rank; k++)
             mixed[m] += (double)bits_float(words[h->mix + (channel * rank + m) * rank + k]) * (double)left_at(words, place, k);

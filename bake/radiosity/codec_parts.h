@@ -43,12 +43,6 @@ static inline const vit_transfer *header_of(const uint32_t *words) {
     return (const vit_transfer *)(const void *)words;
 }
 
-/* Where the parts of a code are, for codec, patches, rank, and the words that sparse entries take; false: too many words. */
-bool codec_lay_out(uint32_t codec, uint32_t patches, uint32_t rank, uint64_t sparse_words, vit_transfer *out);
-static inline uint32_t codec_stride(uint32_t patches) {
-    return (patches + PANEL - 1) / PANEL * PANEL;
-}
-
 /* ---- a file each ---- */
 
 /* Codes of the dense part (codec_dense.c): scale, dense. */
@@ -86,7 +80,6 @@ void codec_encode_sparse(const codec_input *in, const kept_entries *kept, const 
 /* Sum over chunk `chunk` of a row's sparse entries times every fourth of x, and the entries added to a row. */
 float codec_sparse_sum(const uint32_t *words, uint32_t row, uint32_t channel, uint32_t chunk, const float *x);
 void codec_sparse_row(const uint32_t *words, uint32_t row, uint32_t channel, float *out);
-bool codec_sparse_good(const uint32_t *words);
 
 /* codec_low_rank.c: what is not kept. */
 vit_status codec_encode_low_rank(const codec_input *in, const kept_entries *kept, const sparse_shape *shape, uint32_t *words,

@@ -195,31 +195,6 @@ void codec_encode_sparse(const codec_input *in, const kept_entries *kept, const 
 
 /* ---- reading ---- */
 
-bool codec_sparse_good(const uint32_t *words) {
-    const vit_transfer *h = header_of(words);
-    uint64_t first = h->sparse;
-    uint32_t most = 0;
-    for (uint32_t i = 0; i < h->stride; i++)
-        if (words[h->places + i] >= h->stride)
-            return false;
-    for (uint32_t p = 0; p < h->stride / PANEL; p++) {
-        const uint32_t slots = words[h->panels + 2 * p + 1], pair = VIT_TRANSFER_PAIR(h->codec);
-        const uint64_t size = ((uint64_t)slots + 1) / 2 * pair;
-        if (slots > h->stride || words[h->panels + 2 * p] != first || size > h->left - first)
-            return false;
-        for (uint64_t at = first; at < first + size; at += pair)
-            for (uint32_t k = 0; k < pair; k++) {
-                const uint32_t word = words[at + k];
-                if (k < PANEL ? (word & 0xffff) >= h->stride || word >> 16 >= h->stride
-                              : h->codec == VIT_TRANSFER_BC1 && (word & 0x7fffffffu) > BITS_MOST)
-                    return false;
-            }
-        first += size;
-        most = slots > most ? slots : most;
-    }
-    return first == h->left && h->sparse_chunks == (most + VIT_TRANSFER_CHUNK - 1) / VIT_TRANSFER_CHUNK;
-}
-
 /* Column and value of a slot. */
 static float kept(const uint32_t *words, uint32_t place, uint32_t slot, uint32_t channel, uint32_t *column) {
     const vit_transfer *h = header_of(words);

@@ -23,7 +23,7 @@ static bool copy(const baked *from, const baked_input *in, baked *to) {
     const receivers *r = &from->receivers;
     const basis *b = &from->basis;
     *to = *from;
-    to->receivers.receivers = NULL;
+    to->receivers.receivers = copied(r->receivers, from->placed, sizeof *r->receivers);
     to->receivers.sides = copied(r->sides, r->side_count, sizeof *r->sides);
     to->receivers.cells = copied(r->cells, r->cell_count, sizeof *r->cells);
     to->receivers.splits = copied(r->splits, r->split_count, sizeof *r->splits);
@@ -32,9 +32,9 @@ static bool copy(const baked *from, const baked_input *in, baked *to) {
     to->basis.groups = copied(b->groups, (size_t)b->group_count * from->lights, sizeof *b->groups);
     to->basis.words = copied(b->words, b->word_count, sizeof *b->words);
     to->basis.coefficients = copied(b->coefficients, b->coefficient_count, sizeof *b->coefficients);
-    if (!to->receivers.sides == !r->sides && !to->receivers.cells == !r->cells && !to->receivers.splits == !r->splits &&
-        !to->still == !from->still && !to->frames == !from->frames && !to->basis.groups == !b->groups &&
-        !to->basis.words == !b->words && !to->basis.coefficients == !b->coefficients)
+    if (!to->receivers.receivers == !r->receivers && !to->receivers.sides == !r->sides && !to->receivers.cells == !r->cells &&
+        !to->receivers.splits == !r->splits && !to->still == !from->still && !to->frames == !from->frames &&
+        !to->basis.groups == !b->groups && !to->basis.words == !b->words && !to->basis.coefficients == !b->coefficients)
         return true;
     baked_free(to);
     return false;

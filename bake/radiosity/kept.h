@@ -19,7 +19,7 @@ typedef struct baked_kept {
     uint64_t asked;
 } baked_kept;
 
-/* A copy of what was baked of `in` with these effects, if it is there; but for receivers.receivers, which no pack holds. */
+/* A copy of what was baked of `in` with these effects, if it is there. */
 bool baked_kept_get(baked_kept *k, const baked_input *in, uint64_t effects, baked *out);
 /* Keeps a copy, if there is memory. */
 void baked_kept_put(baked_kept *k, const baked_input *in, uint64_t effects, const baked *b);

@@ -19,7 +19,10 @@ const scene_quality settings_default = {
 };
 
 const char *settings_indirect_name(int maker) {
-    static const char *const names[] = {[INDIRECT_PHOTONS] = "photons", [INDIRECT_BASIS] = "basis", [INDIRECT_AUTO] = "auto"};
+    static const char *const names[] = {[INDIRECT_PHOTONS] = "photons",
+                                        [INDIRECT_BASIS] = "basis",
+                                        [INDIRECT_RADIOSITY] = "radiosity",
+                                        [INDIRECT_AUTO] = "auto"};
     return names[maker];
 }
 

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 enum { FILTER_NEAREST, FILTER_BILINEAR, FILTER_TRILINEAR };
-enum { INDIRECT_PHOTONS, INDIRECT_BASIS, INDIRECT_AUTO };
+enum { INDIRECT_PHOTONS, INDIRECT_BASIS, INDIRECT_RADIOSITY, INDIRECT_AUTO };
 
 typedef struct scene_quality {
 #define SETTING(type, member, ...) type member;

@@ -104,7 +104,7 @@ static void encode_all(race *r) {
         const codec_input in = input_of(r, k);
         const double began = bench_seconds();
         must(codec_encode(&in, &r->code[k], &why), &why);
-        must(codec_check(r->code[k].words, r->code[k].count, &why), &why);
+        must(vit_transfer_check(r->code[k].words, r->code[k].count, &why), &why);
         const double seconds = bench_seconds() - began;
         judge(r, k);
         printf("%s: %.1f s to encode, %.1f s to judge\n", codec_names[k], seconds, bench_seconds() - began - seconds);

@@ -151,7 +151,11 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
                   LIMIT(receivers, 0, 1 << 24),
                   LIMIT(basis_lights, 0, 3),
                   LIMIT(basis_words, 0, 1 << 28),
-                  LIMIT(basis_coefficients, 0, 1 << 28)};
+                  LIMIT(basis_coefficients, 0, 1 << 28),
+                  LIMIT(patches, 0, 65520),
+                  LIMIT(gather_words, 0, 1 << 28),
+                  LIMIT(transfer_words, 0, 1 << 30),
+                  LIMIT(transfer_sums, 0, 513)};
 #undef LIMIT
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++)
         for (int k = 0; k < 4; k++) {

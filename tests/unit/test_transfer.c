@@ -17,7 +17,7 @@ static coded encode(const transfer_lab *l, const transfer_matrix *m, uint32_t co
     coded c;
     vit_text why = {""};
     const codec_input in = {.matrix = m, .area = l->area, .codec = codec, .keep = keep, .rank = rank, .threads = threads};
-    if (codec_encode(&in, &c, &why) != VIT_OK || codec_check(c.words, c.count, &why) != VIT_OK)
+    if (codec_encode(&in, &c, &why) != VIT_OK || vit_transfer_check(c.words, c.count, &why) != VIT_OK)
         fail_msg("%s: %s", names[codec], why.text);
     return c;
 }
@@ -288,7 +288,7 @@ static void forged_words_are_refused_or_harmless(void **state) {
             const uint32_t forged[4] = {before + 1, ~before, pcg(k + 1), before ^ 1u << pcg(k) % 32};
             c.words[at] = forged[k % 4];
             vit_text why = {""};
-            const bool good = codec_check(c.words, c.count, &why) == VIT_OK;
+            const bool good = vit_transfer_check(c.words, c.count, &why) == VIT_OK;
             refused += !good;
             tries++;
             if (at < HEADER_WORDS && good && at != 2 && at != 7 && at != 8) /* patches in the same stride, base and step */
@@ -300,7 +300,7 @@ static void forged_words_are_refused_or_harmless(void **state) {
         }
         assert_true(refused >= 60 && refused < tries);
         for (size_t count = 0; count < c.count; count += count < 64 ? 1 : 97)
-            assert_int_equal(codec_check(c.words, count, NULL), VIT_BAD_INPUT);
+            assert_int_equal(vit_transfer_check(c.words, count, NULL), VIT_BAD_INPUT);
         coded_free(&c);
     }
     transfer_matrix_free(&m);

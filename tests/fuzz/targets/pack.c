@@ -3,6 +3,7 @@
  *
  *   chain N             begin from a deep tree of N nodes rather than from the cube
  *   basis               begin from the cube with receivers and a basis rather than with photons
+ *   live                begin from the cube with receivers and patches
  *   plain               leave META's derived fields and the sections' sizes as they were: otherwise they follow META's counts
  *   CODE INDEX = HEX    word INDEX of section CODE (modulo its words); "+" adds, "^" flips bits
  *   HEAD, TABL, FILE    instead of CODE: the header, the section table, the whole file
@@ -42,7 +43,7 @@ typedef struct script {
     edit edits[MAX_EDITS];
     int count;
     uint32_t chain, cut;
-    bool basis, plain, kept;
+    bool basis, live, plain, kept;
 } script;
 
 /* ---- reading a script ---- */
@@ -53,6 +54,7 @@ static void read_line(script *s, const char *line) {
     if (sscanf(line, "chain %u", &s->chain) == 1 || sscanf(line, "cut %u", &s->cut) == 1)
         return;
     s->basis |= strcmp(line, "basis") == 0;
+    s->live |= strcmp(line, "live") == 0;
     s->plain |= strcmp(line, "plain") == 0;
     s->kept |= strcmp(line, "kept") == 0;
     if (s->count == MAX_EDITS || sscanf(line, "%4s %u %c %x", code, &e.index, &e.how, &e.value) != 4)
@@ -217,7 +219,7 @@ static void follow_material(const vit_pack *p, uint32_t index) {
 static void follow_cells(const vit_pack *p, uint32_t triangle) {
     const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
     const vit_cell *cells = p->section[VIT_SECTION_CELL];
-    const vit_u32 count = p->scene->effects & VIT_BIT(BASIS) ? p->scene->receiver_cells : p->scene->cells;
+    const vit_u32 count = p->scene->receivers > 0 ? p->scene->receiver_cells : p->scene->cells;
     for (uint32_t side = 2 * triangle; count && side < 2 * triangle + 2; side++) {
         const vit_u32 n = sides[side] >> VIT_SIDE_PARTS_SHIFT, first = sides[side] & VIT_SIDE_CELL;
         FUZZ_HOLDS(n >= 1 && first + n * n <= count);
@@ -263,6 +265,49 @@ static void follow_basis(const vit_pack *p) {
             FUZZ_HOLDS(last < s->basis_coefficients && last + (at->weight > 0.0f ? b->rank : 0) < s->basis_coefficients);
             FUZZ_HOLDS(first >= b->first_coefficient && word < s->basis_words);
             sum += words[b->first_word] + words[word] + (coefficients[first].rgb[0] > coefficients[last].rgb[2]);
+        }
+    }
+}
+
+static void follow_patches(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_patch *patches = p->section[VIT_SECTION_PATC];
+    const vit_patch_point *points = p->section[VIT_SECTION_PPNT];
+    const vit_u32 stride = VIT_PATCH_STRIDE(s);
+    for (vit_u32 i = 0; i < s->patches; i++) {
+        FUZZ_HOLDS(patches[i].first < patches[i].end && patches[i].end <= s->patch_points);
+        sum += points[patches[i].first].weight > 0.5f;
+    }
+    for (vit_u32 i = 0; i < s->patch_points; i++)
+        FUZZ_HOLDS(points[i].patch < s->patches);
+    FUZZ_HOLDS(s->patch_points % 16 == 0 && stride + s->patch_points <= VIT_MAX_COLUMNS);
+}
+
+static void follow_gather(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_gather_row *rows = p->section[VIT_SECTION_GROW];
+    const vit_u32 *words = p->section[VIT_SECTION_GATH];
+    for (vit_u32 i = 0; s->patches > 0 && i < s->receivers; i++)
+        for (vit_u32 k = 0; k < rows[i].count; k++)
+            FUZZ_HOLDS(rows[i].first + k < s->gather_words &&
+                       (words[rows[i].first + k] & 0xffffu) < VIT_PATCH_STRIDE(s) + s->patch_points);
+}
+
+/* Parts of a code, and what is sparse in it, as transfer_product.clh does. */
+static void follow_transfer(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_u32 *words = p->section[VIT_SECTION_XFER];
+    const vit_transfer *h = p->section[VIT_SECTION_XFER];
+    if (s->transfer_words == 0)
+        return;
+    FUZZ_HOLDS(h->words == s->transfer_words && h->stride == VIT_PATCH_STRIDE(s) && h->mix <= h->words);
+    FUZZ_HOLDS(h->rank == s->transfer_rank && h->dense_chunks + h->sparse_chunks + (h->rank > 0) == s->transfer_sums);
+    for (vit_u32 i = 0; h->sparse_chunks > 0 && i < h->stride; i++) {
+        const vit_u32 first = words[h->panels + i / 16 * 2], slots = words[h->panels + i / 16 * 2 + 1];
+        FUZZ_HOLDS(words[h->places + i] < h->stride);
+        for (vit_u32 k = 0; k < slots; k += 2) {
+            const vit_u32 at = first + k / 2 * VIT_TRANSFER_PAIR(h->codec) + i % 16;
+            FUZZ_HOLDS(at < h->words && (words[at] & 0xffffu) < h->stride && words[at] >> 16 < h->stride);
         }
     }
 }
@@ -316,6 +361,9 @@ static void read_pack(const unsigned char *bytes, size_t size) {
     FUZZ_HOLDS(follow_tree(&pack) == pack.scene->triangles);
     follow_receiver_cells(&pack);
     follow_basis(&pack);
+    follow_patches(&pack);
+    follow_gather(&pack);
+    follow_transfer(&pack);
     check_needs(&(vit_open_info){.pack = bytes, .pack_size = size});
     check_needs(&(vit_open_info){.pack = bytes,
                                  .pack_size = size,
@@ -349,6 +397,8 @@ void fuzz_pack(const uint8_t *data, size_t size) {
     read_script(&s, data, size);
     if (s.chain > 0)
         fixture_make_chain(f, 1 + (s.chain - 1) % (FIXTURE_TRIANGLES - 1));
+    else if (s.live)
+        fixture_make_live(f);
     else if (s.basis)
         fixture_make_basis(f);
     else

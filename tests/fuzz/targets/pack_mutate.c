@@ -21,6 +21,10 @@ static const char codes[][5] = {
     "RCEL",
     "BGRP",
     "BFRM",
+    "PATC",
+    "GROW",
+    "GATH",
+    "XFER",
 };
 
 static const uint32_t values[] = {
@@ -57,7 +61,7 @@ static int new_line(char *line, size_t room, uint64_t *state) {
     if (kind == 0)
         return snprintf(line, room, "chain %u\n", 1 + next(state) % 95);
     if (kind == 3)
-        return snprintf(line, room, "basis\n");
+        return snprintf(line, room, next(state) % 2 ? "basis\n" : "live\n");
     if (kind == 1)
         return snprintf(line, room, next(state) % 2 ? "plain\n" : "kept\n");
     if (kind == 2)

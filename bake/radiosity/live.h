@@ -1,0 +1,41 @@
+/* live.c: what a pack has to find indirect light of lights that are not known beforehand: patches with points where shadow rays
+ * ask for direct light on them, the transfer matrix between them, and what each receiver sees of them. */
+#ifndef VIT_RADIOSITY_LIVE_H
+#define VIT_RADIOSITY_LIVE_H
+
+#include "radiosity/codec.h"
+#include "radiosity/receivers.h"
+
+typedef struct live_input {
+    const photon_rays *rays;
+    const geometry *geometry;
+    const tracks *tracks;
+    uint32_t frames, width, height;
+    const receiver *receivers;
+    uint32_t receiver_count, rows;             /* rows: at least as many; those beyond see nothing */
+    uint32_t patches, points;                  /* quality.patches; quality.patch_points, 1..PATCHES_POINTS */
+    uint32_t codec;                            /* VIT_TRANSFER_* */
+    uint32_t receiver_rays;                    /* quality.receiver_rays */
+    uint32_t reflections;                      /* between light and receiver, at most, or TRANSFER_CONVERGED */
+    unsigned threads;                          /* 0: all cores; changes no byte */
+    void (*progress)(void *user, double done); /* may be NULL */
+    void *user;
+} live_input;
+
+typedef struct live {
+    vit_patch *patches;      /* section PATC */
+    vit_patch_point *points; /* section PPNT; a multiple of 16 */
+    vit_gather_row *rows;    /* section GROW: a receiver */
+    vit_u32 *words;          /* section GATH */
+    coded transfer;          /* section XFER; empty with one reflection */
+    uint32_t patch_count, point_count, word_count;
+    double unequal;     /* form_factors.unequal */
+    double spectral[3]; /* transfer_matrix.spectral */
+} live;
+
+/* VIT_FAILED: out of memory. VIT_BAD_INPUT: the matrix is too large, or all reflections are too many. On failure there is
+ * nothing to free. */
+vit_status live_find(const live_input *in, live *out, vit_text *why);
+void live_free(live *l);
+
+#endif

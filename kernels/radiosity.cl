@@ -1,0 +1,120 @@
+/* Live radiosity (METHODS.md, "Live radiosity"): light on patches by shadow rays from their points (patch_light, patch_mean),
+ * what reflections add to it by the product with a coded transfer matrix (transfer_product.cl, patch_reflect), and what of it
+ * receivers see (gather_patches). `radiosity`: four floats a column, the channels and one that is 0; columns are the patches,
+ * to a whole sixteen, then all patches' points. */
+#if VIT_WITH(RADIOSITY)
+
+/* Four fused multiply-adds, s * v + a: as OpenCL one operation. */
+static inline float4 radiosity_add(float4 a, float s, float4 v) {
+#ifdef __OPENCL_VERSION__
+    return fma((float4)(s), v, a);
+#else
+    for (int k = 0; k < 4; k++)
+        a[k] = fma(s, v[k], a[k]);
+    return a;
+#endif
+}
+
+/* Radiosity of points by the lights that are live. */
+kernel void patch_light(RAY_SCENE_PARAMETERS, uint frame, global const vit_light *lights, global const vit_patch_point *points,
+                        global float *radiosity WORK_PARAMETERS) {
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->patch_points)
+        return;
+    global const float *p = (global const float *)points;
+    const int words = (int)(sizeof(vit_patch_point) / sizeof(float));
+    li at = (L_INDEX + (int)first) * words;
+    lit_sample s;
+    s.p = lv3_set(L_GATHER(lf, p, at), L_GATHER(lf, p + 1, at), L_GATHER(lf, p + 2, at));
+    s.n = s.face = lv3_set(L_GATHER(lf, p + 4, at), L_GATHER(lf, p + 5, at), L_GATHER(lf, p + 6, at));
+    s.hit = L_GT(L_GATHER(lf, p + 7, at), L_F(0));
+    lv3 e = lv3_set(L_F(0), L_F(0), L_F(0));
+    WORK_BEGIN
+    for (uint i = 0; i < scene->lights; i++) {
+        global const vit_light *light = lights + (size_t)frame * scene->lights + i;
+        if (!(scene->live[i / 32u] >> (i % 32u) & 1u))
+            continue;
+        lv3 to;
+        lf cosine, d;
+        lv3 l = lit_way(scene, light, &s, &to, &d, &cosine);
+        li lit = s.hit & L_GT(cosine, L_F(0));
+        if (!l_any(lit))
+            continue;
+        ray_packet r = ray_make(s.p, l);
+        WORK_LANES(shadow_rays, lit);
+        lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
+        WORK_TRACED(r);
+        e = lv3_along(e, lv3_load(light->intensity), l_sel(lit, cosine, L_F(0)));
+    }
+    float value[3][VIT_LANES];
+    L_STORE(e.x * L_GATHER(lf, p + 8, at), value[0]);
+    L_STORE(e.y * L_GATHER(lf, p + 9, at), value[1]);
+    L_STORE(e.z * L_GATHER(lf, p + 10, at), value[2]);
+    for (uint i = 0; i < VIT_LANES; i++)
+        vstore4(VIT_FLOAT4(value[0][i], value[1][i], value[2][i], 0.0f), VIT_PATCH_STRIDE(scene) + first + i, radiosity);
+    WORK_END
+}
+
+/* Radiosity of patches: of their points, in their order. */
+kernel void patch_mean(global const vit_scene *scene, global const vit_patch *patches, global const vit_patch_point *points,
+                       global float *radiosity) {
+    uint patch = (uint)get_global_id(0), stride = VIT_PATCH_STRIDE(scene);
+    if (patch >= stride)
+        return;
+    float4 sum = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f);
+    uint end = patch < scene->patches ? patches[patch].end : 0;
+    for (uint i = end ? patches[patch].first : 0; i < end; i++)
+        sum = radiosity_add(sum, points[i].weight, vload4(stride + i, radiosity));
+    vstore4(sum, patch, radiosity);
+}
+#endif
+
+#if VIT_WITH(TRANSFER)
+/* At least 0, which is what is no number, too. */
+static inline float radiosity_reflected(global const vit_scene *scene, float y) {
+    y = y > 0.0f ? y : 0.0f;
+    return y < scene->most_reflected ? y : scene->most_reflected;
+}
+
+/* Adds what reflections give a patch to its column, or to a point's by its own albedo. */
+kernel void patch_reflect(global const vit_scene *scene, global const vit_patch_point *points, global const float *reflected,
+                          global float *radiosity) {
+    uint column = (uint)get_global_id(0), stride = VIT_PATCH_STRIDE(scene);
+    if (column >= stride + scene->patch_points)
+        return;
+    global const vit_patch_point *p = points + (column < stride ? 0 : column - stride);
+    uint patch = column < stride ? column : p->patch;
+    for (uint k = 0; k < 3; k++) {
+        float share = column < stride ? 1.0f : p->reflect[k];
+        radiosity[4 * column + k] =
+            fma(radiosity_reflected(scene, reflected[k * stride + patch]), share, radiosity[4 * column + k]);
+    }
+}
+#endif
+
+#if VIT_WITH(RADIOSITY)
+/* Irradiance of a receiver: of light that stays, and of what it sees; even and odd words apart. */
+kernel void gather_patches(global const vit_scene *scene, global const vit_gather_row *rows, global const uint *words,
+                           global const vit_receiver *receivers, global const float *radiosity,
+                           global float *relit WORK_PARAMETERS) {
+    uint receiver = (uint)get_global_id(0);
+    if (receiver >= scene->receivers)
+        return;
+    global const uint *at = words + rows[receiver].first;
+    uint count = rows[receiver].count;
+    float scale = rows[receiver].scale;
+    float4 even = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), odd = even;
+    WORK_BEGIN
+    WORK_ADD(evaluations, count);
+    for (uint i = 0; i + 1 < count; i += 2) {
+        even = radiosity_add(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
+        odd = radiosity_add(odd, (float)(at[i + 1] >> 16), vload4(at[i + 1] & 0xffffu, radiosity));
+    }
+    if (count & 1u)
+        even = radiosity_add(even, (float)(at[count - 1] >> 16), vload4(at[count - 1] & 0xffffu, radiosity));
+    global const float *still = receivers[receiver].irradiance;
+    even = radiosity_add(VIT_FLOAT4(still[0], still[1], still[2], 0.0f), scale, even + odd);
+    vstore4(even, receiver, relit);
+    WORK_END
+}
+#endif
