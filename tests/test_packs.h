@@ -143,6 +143,13 @@ static const struct {
     {"basis-33x47", TEST_SCENES "/cornell.cfg", PLAIN BASIS "--size 33x47 --frames 3 --sample-bits 16"},
     {"basis-shine", TEST_PACKS "/shine.cfg", BASIS "--all-formats"},
 #undef BASIS
+#define LIVE "--indirect radiosity --receiver-rays 64 --receiver-spacing 24 --patches 200 "
+    {"live", TEST_PACKS "/room.cfg", PLAIN LIVE "--all-formats"},
+    {"live-once", TEST_PACKS "/room.cfg", PLAIN LIVE "--bounces 2"},
+    {"live-still", TEST_PACKS "/still.cfg", PLAIN LIVE},
+    {"live-33x47", TEST_SCENES "/cornell.cfg", PLAIN LIVE "--size 33x47 --frames 3 --codec bc1"},
+    {"live-shine", TEST_PACKS "/shine.cfg", LIVE "--all-formats --codec log8"},
+#undef LIVE
 #undef PLAIN
     {"shine", TEST_PACKS "/shine.cfg", "--all-formats"},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},

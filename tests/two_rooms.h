@@ -23,9 +23,10 @@ static inline void rooms_box(FILE *f, const double lo[3], const double hi[3], in
             (void)fprintf(f, "f %d %d %d %d\n", face[i][0] + first, face[i][1] + first, face[i][2] + first, face[i][3] + first);
 }
 
-/* Scene file `name` of the mesh rooms.obj; `third`: keys of the third camera; power: of the bright room's lamp, W. The dark one
- * has a lamp of a thousandth of 100 W, so that its sides count as lit; a test takes its light away again. */
-static inline void rooms_scene(scene_lab *l, const char *name, const char *third, double power) {
+/* Scene file `name` of the mesh rooms.obj; `third`: keys of the third camera; power: of the bright room's lamp, W, which with
+ * `moves` goes a millimetre. The dark one has a lamp of a thousandth of 100 W, so that its sides count as lit; a test takes its
+ * light away again. */
+static inline void rooms_scene(scene_lab *l, const char *name, const char *third, double power, bool moves) {
     FILE *f = scene_lab_create(l, name);
     (void)fprintf(f,
                   "output: { width = %d; height = %d; fps = 1.0; frames = %d; };\nmeshes = ( { file = \"rooms.obj\"; } );\n"
@@ -34,10 +35,11 @@ static inline void rooms_scene(scene_lab *l, const char *name, const char *third
                   "{ time = 1.0; fov = 80.0; eye = [3.7, 1.5, 1.6]; target = [0.05, 1.2, -0.4]; },"
                   "{ time = 2.0; %s }); };\n"
                   "lights = ("
-                  "{ type = \"point\"; keys = ( { position = [-2.0, 2.0, 0.3]; power = [%g, %g, %g]; } ); },"
+                  "{ type = \"point\"; keys = ( { position = [-2.0, 2.0, 0.3]; power = [%g, %g, %g]; }%s ); },"
                   "{ type = \"point\"; keys = ( { position = [2.0, 2.0, -0.3]; power = [0.1, 0.1, 0.1]; } ); });\n"
                   "quality: { bounces = 4; tile = 16; };\n",
-                  ROOMS_SIDE, ROOMS_SIDE, ROOMS_VIEWS, third, power, power, power);
+                  ROOMS_SIDE, ROOMS_SIDE, ROOMS_VIEWS, third, power, power, power,
+                  moves ? ", { time = 2.0; position = [-2.001, 2.0, 0.3]; }" : "");
     (void)fclose(f);
 }
 

@@ -153,7 +153,7 @@ static uint64_t effects_of_photons(const scene *s, const plan *p) {
 static uint64_t effects_of_basis(const scene *s, const tracks *t, const plan *p) {
     uint64_t e = effects_of_photons(s, p) ? VIT_BIT(BASIS) : 0;
     for (uint32_t i = 0; i < t->light_count && e; i++)
-        e |= !t->still[i] && gives_photons(s, i) ? VIT_BIT(RELIGHT) : 0;
+        e |= t->lights[i].path_count > 0 ? VIT_BIT(RELIGHT) : 0; /* of lights that move alone */
     return e;
 }
 

@@ -6,6 +6,7 @@
 #include "two_rooms.h"
 
 #define BASIS "--indirect basis --receiver-rays 256"
+#define LIVE "--indirect radiosity --receiver-rays 256"
 #define AT_ITS_FOOT "fov = 50.0; eye = [1.6, 1.2, 0.0]; target = [0.05, 0.05, 0.0];"
 
 static int set_up(void **state) {
@@ -15,16 +16,16 @@ static int set_up(void **state) {
     rooms_box(f, (const double[]){-4.0, 0.0, -2.0}, (const double[]){4.0, 3.0, 2.0}, 0, 0);
     rooms_box(f, (const double[]){-0.005, 0.0, -2.0}, (const double[]){0.005, 3.0, 2.0}, 8, 3);
     (void)fclose(f);
-    rooms_scene(&lab, "both.cfg", AT_ITS_FOOT, 100.0);
-    rooms_scene(&lab, "dim.cfg", AT_ITS_FOOT, 0.0);
+    rooms_scene(&lab, "both.cfg", AT_ITS_FOOT, 100.0, false);
+    rooms_scene(&lab, "dim.cfg", AT_ITS_FOOT, 0.0, false);
     *state = &lab;
     return 0;
 }
 
-static void nothing_to_speak_of_comes_through_a_thin_wall(void **state) {
+static void assert_no_leak(scene_lab *l, const char *with, const char *without, const char *options) {
     static rooms_picture both, dim;
-    scene_lab_indirect(*state, "both.cfg", BASIS, both, ROOMS_FLOATS);
-    scene_lab_indirect(*state, "dim.cfg", BASIS, dim, ROOMS_FLOATS);
+    scene_lab_indirect(l, with, options, both, ROOMS_FLOATS);
+    scene_lab_indirect(l, without, options, dim, ROOMS_FLOATS);
     for (int view = DARK; view < ROOMS_VIEWS; view++) {
         const double leak = rooms_leak(both, dim, view);
         print_message("  view %d: %.4f %% of the bright room\n", view, 100.0 * leak);
@@ -32,12 +33,16 @@ static void nothing_to_speak_of_comes_through_a_thin_wall(void **state) {
     }
 }
 
+static void nothing_to_speak_of_comes_through_a_thin_wall(void **state) {
+    assert_no_leak(*state, "both.cfg", "dim.cfg", BASIS);
+}
+
 /* A lamp whose power alone changes, and one that stays: the same light where they say the same. */
 static void a_light_that_changes_gives_what_one_that_stays_gives(void **state) {
     static const char *const cfg[2] = {"{ position = [-2.0, 2.0, 0.3]; power = [100.0, 90.0, 80.0]; }",
                                        "{ time = 0.0; position = [-2.0, 2.0, 0.3]; power = [100.0, 90.0, 80.0]; },"
                                        "{ time = 2.0; position = [-2.0, 2.0, 0.3]; power = [50.0, 45.0, 40.0]; }"};
-    static rooms_picture light[2];
+    static rooms_picture light[2], live;
     for (int i = 0; i < 2; i++) {
         FILE *f = scene_lab_create(*state, "change.cfg");
         (void)fprintf(f,
@@ -48,11 +53,16 @@ static void a_light_that_changes_gives_what_one_that_stays_gives(void **state) {
                       ROOMS_SIDE, ROOMS_SIDE, ROOMS_VIEWS, cfg[i]);
         (void)fclose(f);
         scene_lab_indirect(*state, "change.cfg", BASIS, light[i], ROOMS_FLOATS);
+        if (i == 1)
+            scene_lab_indirect(*state, "change.cfg", LIVE, live, ROOMS_FLOATS);
     }
     const double still = rooms_mean(light[0], 0);
     assert_true(still > 0.01);
     assert_true(fabs(rooms_mean(light[1], 0) / still - 1.0) < 2e-3);
     assert_true(fabs(rooms_mean(light[1], 2) / still - 0.5) < 2e-3);
+    print_message("  live: %.4f and %.4f of it\n", rooms_mean(live, 0) / still, rooms_mean(live, 2) / still);
+    assert_true(fabs(rooms_mean(live, 0) / still - 1.0) < 0.02);
+    assert_true(fabs(rooms_mean(live, 2) / rooms_mean(live, 0) - 0.5) < 1e-4); /* linear in the light */
 }
 
 int main(void) {

@@ -310,8 +310,8 @@ static void bounds_larger_than_needed_change_no_bit(void **state) {
 /* Baked irradiance has no hierarchy and no lists: there is nothing to bound and nothing to drop. */
 static void a_basis_has_no_bounds(void **state) {
     (void)state;
-    static const char *const names[] = {"basis", "basis-shine"};
-    for (size_t i = 0; i < 2; i++) {
+    static const char *const names[] = {"basis", "basis-shine", "live", "live-33x47"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         open_pack p;
         pack_open(&p, names[i], (vit_open_info){.max_nodes = 1, .max_list = 1, .device = VIT_DEVICE_HOST});
         assert_int_equal(bound_of_nodes(&p) + bound_of_list(&p), 0);

@@ -239,15 +239,39 @@ static void still_lights_need_no_basis_and_no_relight(void **state) {
     assert_int_equal(requirements("basis-still").effects & VIT_BIT(RELIGHT), 0);
 }
 
+#define OF_PATCHES " patches patch_points gather_rows gather_words radiosity "
+#define OF_TRANSFER " transfer sums reflected "
+
+/* Receivers are the basis's; a second reflection has its own buffers and passes, and so has a rank. */
+static void live_radiosity_takes_the_place_of_the_basis(void **state) {
+    (void)state;
+    const vit_requirements live = requirements("live"), once = requirements("live-once");
+    adds("live", "basis", OF_PATCHES OF_TRANSFER " projected mixed ",
+         " patch_light patch_mean transfer_project transfer_mix transfer_partial transfer_sum patch_reflect gather_patches ");
+    adds("basis", "live", " basis_groups basis_words basis_coefficients basis_frames ", " relight ");
+    only_adds("live", "live-once", OF_TRANSFER " projected mixed ",
+              " transfer_project transfer_mix transfer_partial transfer_sum patch_reflect ");
+    assert_int_equal(bytes_of(&live, "relit"), bytes_of(&live, "receivers"));
+    assert_int_equal(once.effects & (VIT_BIT(TRANSFER) | VIT_BIT(LOW_RANK)), 0);
+    assert_int_equal(live.effects & vit_effects_upon(VIT_BIT(BASIS)), 0);
+    assert_int_equal(requirements("live-33x47").effects & VIT_BIT(LOW_RANK), 0); /* BC1 has none */
+}
+
+static void still_lights_are_baked_whatever_is_live(void **state) {
+    (void)state;
+    only_adds("live-still", "basis-still", " ", " ");
+    only_adds("basis-still", "live-still", " ", " ");
+}
+
 static void photons_have_nothing_of_baked_irradiance(void **state) {
     (void)state;
     static const char *const packs[] = {"list", "room", "zones", "sparse-buckets", "still", "dark", "lamp", "shine"};
     for (size_t k = 0; k < sizeof packs / sizeof packs[0]; k++) {
         const vit_requirements need = requirements(packs[k]);
-        assert_int_equal(need.effects & vit_effects_upon(VIT_BIT(BASIS)), 0);
-        assert_false(has_pass(&need, "relight"));
+        assert_int_equal(need.effects & (vit_effects_upon(VIT_BIT(BASIS)) | vit_effects_upon(VIT_BIT(RADIOSITY))), 0);
+        assert_false(has_pass(&need, "relight") || has_pass(&need, "gather_patches"));
         for (uint32_t i = 0; i < need.buffer_count; i++)
-            assert_false(is_among(" basis relight ", need.buffers[i].effect));
+            assert_false(is_among(" basis relight radiosity transfer low-rank ", need.buffers[i].effect));
     }
 }
 
@@ -347,6 +371,8 @@ int main(void) {
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(baked_irradiance_takes_the_photons_place),
         cmocka_unit_test(still_lights_need_no_basis_and_no_relight),
+        cmocka_unit_test(live_radiosity_takes_the_place_of_the_basis),
+        cmocka_unit_test(still_lights_are_baked_whatever_is_live),
         cmocka_unit_test(photons_have_nothing_of_baked_irradiance),
         cmocka_unit_test(a_scene_without_lights_has_neither_lights_nor_photons),
         cmocka_unit_test(a_scene_without_textures_has_no_atlas),

@@ -204,6 +204,15 @@ static void photons_traced_while_playing_carry_the_same_light(void **state) {
     assert_true(fabs(box_ratio(*state, "box_moving.cfg", "--photons 65536 --radius 0.1") - 1) < LIST_WITHIN);
 }
 
+/* The points' direct light is what there is of noise; a code of low rank loses some, too. */
+static void live_radiosity_keeps_all_light_in_a_box(void **state) {
+    assert_true(fabs(box_ratio(*state, "box_moving.cfg", "--indirect radiosity --receiver-spacing 3 --patches 1024") - 1) <
+                0.005);
+    assert_true(
+        fabs(box_ratio(*state, "box_moving.cfg", "--indirect radiosity --receiver-spacing 3 --patches 256 --codec float32") -
+             1) < 0.005);
+}
+
 static void the_bucket_estimate_keeps_all_light_in_a_box(void **state) {
     assert_true(fabs(box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --estimate buckets") - 1) < BUCKETS_WITHIN);
 }
@@ -266,6 +275,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_list_estimate_keeps_all_light_in_a_box),
         cmocka_unit_test(photons_traced_while_playing_carry_the_same_light),
+        cmocka_unit_test(live_radiosity_keeps_all_light_in_a_box),
         cmocka_unit_test(the_bucket_estimate_keeps_all_light_in_a_box),
         cmocka_unit_test(the_list_estimate_is_right_everywhere_in_a_sphere),
         cmocka_unit_test(the_bucket_estimate_is_right_everywhere_in_a_sphere),

@@ -218,6 +218,7 @@ static void nothing_is_allocated_opened_or_printed_from_open_to_close(void **sta
     assert_int_equal(calls_of_a_whole_life("room-buckets", (vit_open_info){0}), 0);
     assert_int_equal(calls_of_a_whole_life("dark", (vit_open_info){0}), 0);
     assert_int_equal(calls_of_a_whole_life("basis", (vit_open_info){0}), 0);
+    assert_int_equal(calls_of_a_whole_life("live", (vit_open_info){0}), 0);
 }
 
 static void the_device_host_takes_all_its_memory_from_the_caller(void **state) {

@@ -128,6 +128,7 @@ static void the_device_host_gives_the_bits_of_opencl(void **state) {
     assert_all_alike(test_pack("zones-sparse-buckets"), "--trace", on_host, COUNT(on_host));
     assert_all_alike(test_pack("basis-33x47"), "--trace", on_host, COUNT(on_host));
     assert_all_alike(test_pack("basis-shine"), "--trace", on_host, COUNT(on_host));
+    assert_all_alike(test_pack("live"), "--trace", on_host, COUNT(on_host));
 }
 
 static void make_caches(void) {
@@ -167,6 +168,10 @@ ALIKE(baked_irradiance_of_a_light_that_moves_hashes_the_same, "basis", together)
 ALIKE(baked_irradiance_of_still_light_hashes_the_same, "basis-still", fewest)
 ALIKE(baked_irradiance_in_small_tiles_hashes_the_same, "basis-16", fewest)
 ALIKE(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same, "basis-33x47", few)
+ALIKE(live_radiosity_hashes_the_same, "live", together)
+ALIKE(live_radiosity_of_one_reflection_hashes_the_same, "live-once", fewest)
+ALIKE(live_radiosity_by_bc1_hashes_the_same, "live-33x47", few)
+ALIKE(live_radiosity_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "live-shine", together)
 ALIKE(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "basis-shine", together)
 ALIKE(frames_without_photons_hash_the_same, "dark", fewest)
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
@@ -211,6 +216,7 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("shine"), "--trace", few, COUNT(few));
     assert_all_alike(test_pack("basis"), "--trace", few, COUNT(few));
+    assert_all_alike(test_pack("live"), "--trace", few, COUNT(few));
 }
 
 /* Every format at every width by the device host; OpenCL's compiler makes each pair anew, so that there each width has one

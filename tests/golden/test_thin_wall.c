@@ -18,8 +18,8 @@ static int set_up(void **state) {
     rooms_box(f, (const double[]){-4.0, 0.0, -2.0}, (const double[]){-0.05, 3.0, 2.0}, 0, 0);
     rooms_box(f, (const double[]){0.05, 0.0, -2.0}, (const double[]){4.0, 3.0, 2.0}, 8, 0);
     (void)fclose(f);
-    rooms_scene(&lab, "both.cfg", FACING_THE_WALL, 100.0);
-    rooms_scene(&lab, "dim.cfg", FACING_THE_WALL, 0.0);
+    rooms_scene(&lab, "both.cfg", FACING_THE_WALL, 100.0, false);
+    rooms_scene(&lab, "dim.cfg", FACING_THE_WALL, 0.0, false);
     *state = &lab;
     return 0;
 }

@@ -213,7 +213,8 @@ static void ways_of_making_indirect_light_are_a_knob(void **state) {
     q.buckets = true; /* which the basis does not care for */
     in.effects = all | VIT_BIT(BASIS);
     l = make_for(in.effects, &q, 0, only, 100);
-    assert_int_equal(l.count, 1 + 3 + 2 + 2);
+    assert_int_equal(l.count, 1 + 3 + 3 + 2);
+    assert_int_equal(find(&l, "indirect radiosity")->quality.indirect, INDIRECT_RADIOSITY);
     assert_true(find(&l, "indirect photons list")->quality.indirect == INDIRECT_PHOTONS);
     assert_false(find(&l, "indirect photons list")->quality.buckets);
     assert_true(find(&l, "indirect photons buckets")->quality.buckets);

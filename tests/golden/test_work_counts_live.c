@@ -1,0 +1,78 @@
+/* Work counters of live radiosity: exact, and equal at any width, as test_work_counts.c has it of photons. What receivers see
+ * is counted again from the pack, shadow rays from its points and lights. */
+#include "counted_work.h"
+
+static const vit_open_info on_host = {.device = VIT_DEVICE_HOST};
+
+static void counts_of_live_radiosity_are_the_same_for_any_lanes(void **state) {
+    (void)state;
+    static const char *const names[] = {"live", "live-33x47", "live-shine"};
+    static const uint32_t ways[][2] = {{VIT_DEVICE_HOST, 1}, {VIT_DEVICE_HOST, 8}, {VIT_DEVICE_HOST, 16}, {0, 8}};
+    static vit_statistics s[2];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        for (size_t w = 0; w < (i < 1 ? 4 : 3); w++) {
+            uint64_t hash;
+            s[w > 0] = count(names[i], ways[w][0], ways[w][1], 0, &hash);
+            assert_equal_work(&s[0], &s[w > 0], 0, names[i]);
+        }
+}
+
+static void evaluations_are_what_receivers_see(void **state) {
+    (void)state;
+    static const char *const names[] = {"live", "live-once", "live-33x47", "live-shine"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        counted *c = count_frame(names[i], on_host);
+        assert_true(c->scene->gather_words > 0);
+        assert_int_equal(WORK(&c->s, gather_patches, evaluations), c->scene->gather_words);
+        assert_int_equal(total(&c->s, VIT_WORK_evaluations), c->scene->gather_words);
+        drop(c);
+    }
+}
+
+/* A ray from each point that faces the light, of a lamp in the middle of a room: the room's are all but those that furniture
+ * turns away. */
+static void points_send_one_shadow_ray_at_most_to_each_light_that_is_live(void **state) {
+    (void)state;
+    static const char *const names[] = {"live", "live-33x47", "live-shine"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        counted *c = count_frame(names[i], on_host);
+        const uint64_t rays = WORK(&c->s, patch_light, shadow_rays), lights = (uint64_t)__builtin_popcount(c->scene->live[0]);
+        assert_true(lights > 0 && lights <= c->scene->lights);
+        assert_in_range(rays, c->scene->patch_points / 8, c->scene->patch_points * lights);
+        drop(c);
+    }
+}
+
+static void bytes_of_live_radiosity_are_sizes_times_counts(void **state) {
+    (void)state;
+    counted *c = count_frame("live", on_host);
+    const vit_scene *s = c->scene;
+    const uint64_t points = s->patch_points, stride = VIT_PATCH_STRIDE(s), words = (uint64_t)s->transfer_words * 4,
+                   right = (uint64_t)s->transfer_rank / 2 * stride * 4 + stride * 4,
+                   mix = (uint64_t)s->transfer_rank * s->transfer_rank * 12;
+    assert_int_equal(WORK(&c->s, patch_light, bytes), points * (64 + 16) + s->lights * sizeof(vit_light));
+    assert_int_equal(WORK(&c->s, patch_mean, bytes), s->patches * 16 + points * 20 + stride * 16);
+    assert_int_equal(WORK(&c->s, transfer_project, bytes) - right - stride * 16, pack_buffer_bytes(&c->p, "projected"));
+    assert_int_equal(WORK(&c->s, transfer_mix, bytes) - mix,
+                     pack_buffer_bytes(&c->p, "projected") + pack_buffer_bytes(&c->p, "mixed"));
+    assert_int_equal(WORK(&c->s, transfer_partial, bytes),
+                     words - right - mix + stride * 16 + pack_buffer_bytes(&c->p, "mixed") + pack_buffer_bytes(&c->p, "sums"));
+    assert_int_equal(WORK(&c->s, transfer_sum, bytes),
+                     pack_buffer_bytes(&c->p, "sums") + pack_buffer_bytes(&c->p, "reflected"));
+    assert_int_equal(WORK(&c->s, patch_reflect, bytes),
+                     pack_buffer_bytes(&c->p, "reflected") + 2 * pack_buffer_bytes(&c->p, "radiosity") + points * 16);
+    assert_int_equal(WORK(&c->s, gather_patches, bytes),
+                     pack_buffer_bytes(&c->p, "gather_rows") + pack_buffer_bytes(&c->p, "receivers") +
+                         pack_buffer_bytes(&c->p, "relit") + (uint64_t)s->gather_words * 20);
+    drop(c);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counts_of_live_radiosity_are_the_same_for_any_lanes),
+        cmocka_unit_test(evaluations_are_what_receivers_see),
+        cmocka_unit_test(points_send_one_shadow_ray_at_most_to_each_light_that_is_live),
+        cmocka_unit_test(bytes_of_live_radiosity_are_sizes_times_counts),
+    };
+    return cmocka_run_group_tests_name("work counts of live radiosity", tests, NULL, NULL);
+}
