@@ -8,8 +8,8 @@
 set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
 mkdir -p "$out" && out=$(cd "$out" && pwd)
-packs="list zones buckets atrium shine basis basis-still basis-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
-if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis" strict_packs="zones basis" widths=8 threads_tried=2 devices=pthread; fi
+packs="list zones buckets atrium shine basis basis-still basis-shine live-float32 live-float16 live-log8 live-bc1 live-sparse live-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine live-bc1 live-sparse" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
+if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis tiny-live-sparse" strict_packs="zones basis live-sparse" widths=8 threads_tried=2 devices=pthread; fi
 row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
     label=$1 && shift
     rows=$((rows + 1))
@@ -28,17 +28,24 @@ whole() { # the packs that a smoke run leaves out
     bake atrium atrium "--size 160x90 --photons 4000 --texture-filter trilinear"
     bake cornell basis "--size 97x61 $basis --tile 8 --sample-bits 16"
     bake rooms basis-still "--size 128x96 $basis --antialias 4"
+    for codec in float32 float16 log8 bc1 sparse; do
+        bake cornell live-$codec "--size 97x61 $live --codec $codec"
+    done
+    bake cornell tiny-live-bc1 "$tiny $live --codec bc1"
 }
 # Baked irradiance: of a light that moves, of light that is still; with the balls below, of the sky, a lamp and a light that moves.
 basis="--indirect basis --receiver-rays 64 --receiver-spacing 24"
-[ "${VITRINE_MATRIX:-}" = smoke ] || whole
+# Live radiosity of a light that moves, by each code of the matrix between patches; with the balls below, beside light that is baked.
+live="--indirect radiosity --receiver-rays 64 --receiver-spacing 24 --patches 300"
 tiny="--size 17x9 --photons 200 --tile 8"
+[ "${VITRINE_MATRIX:-}" = smoke ] || whole
 bake cornell tiny-list "$tiny --zones 0 --indirect-samples 1"
 bake cornell tiny-zones "$tiny --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
 bake cornell tiny-buckets "$tiny --estimate buckets --normal-keys 1 --sample-bits 16 --indirect-samples 1"
 bake cornell tiny-raw "$tiny --estimate buckets --smoothing raw --indirect-samples 16"
 bake atrium tiny-atrium "$tiny --texture-filter trilinear"
 bake cornell tiny-basis "$tiny $basis --indirect-samples 16"
+bake cornell tiny-live-sparse "$tiny $live"
 # Our balls in all effects that they can have; the sky is a picture of two texels.
 printf '\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\30\0\200\140\100\100\140\200' > "$out/sky.tga"
 cat > "$out/shine.cfg" <<EOF
@@ -60,6 +67,8 @@ EOF
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/shine.vit" --quiet --no-check --device host || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-shine.vit" --quiet --no-check --device host $tiny || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/basis-shine.vit" --quiet --no-check --device host $basis || exit 1
+[ "${VITRINE_MATRIX:-}" = smoke ] ||
+    "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/live-shine.vit" --quiet --no-check --device host $live || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-basis-shine.vit" --quiet --no-check --device host $tiny $basis || exit 1
 
 play="$tools/vitrine-play --verify --quiet"

@@ -2,6 +2,7 @@
 #include "common/fail.h"
 #include "common/parallel.h"
 #include "radiosity/gather.h"
+#include "radiosity/patches_parted.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,7 +145,7 @@ static bool find_cells(clustering *k) {
     for (uint32_t i = 0; i < c->count; i++) {
         k->p->patch_of[i] = VIT_NONE;
         k->area[i] = cells_area(c, k->in->geometry, i);
-        if (!is_in(k->in, c->side_of[i]) || !(k->area[i] > 0.0f) || !(k->worth[i] > 0.0f))
+        if (!is_in(k->in, c->side_of[i]) || !(k->area[i] > 0.0f) || !(k->worth[i] > 0.0f) || k->p->part_of[i] != VIT_NONE)
             continue;
         k->p->area += (double)k->area[i];
         k->order[count++] = i;
@@ -446,6 +447,7 @@ static void split_all(clustering *k) {
 vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) {
     clustering k = {.in = in, .p = out};
     memset(out, 0, sizeof *out);
+    out->geometry = in->geometry;
     double area = 0.0;
     for (uint32_t side = 0; side < 2 * in->rays->s->triangle_count; side++)
         area += is_in(in, side) ? (double)side_area(in->geometry, side) : 0.0;
@@ -456,7 +458,7 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
     out->patch_of = malloc((out->cells.count + 1u) * sizeof *out->patch_of);
     k.clusters = calloc(in->count, sizeof *k.clusters);
     k.forks = calloc(in->count, sizeof *k.forks);
-    bool fine = out->patch_of && k.clusters && k.forks && find_worth(&k) && find_cells(&k);
+    bool fine = out->patch_of && k.clusters && k.forks && patches_find_parts(in, edge, out) && find_worth(&k) && find_cells(&k);
     if (fine && k.clusters[0].count > 0)
         split_all(&k);
     const uint32_t used = fine ? (k.count ? out->cells.count : 0) : 0;
@@ -483,6 +485,7 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
         for (uint32_t i = 0; i < out->cells.count; i++)
             if (out->patch_of[i] == VIT_NONE && is_in(in, out->cells.side_of[i]))
                 out->patch_of[i] = place(&k, i);
+        patches_place_parts(in, edge, out);
         keep_points(&k);
     } else {
         status = bake_fail(why, VIT_FAILED, "patches: out of memory");
@@ -507,6 +510,8 @@ void patches_free(patch_set *p) {
     free(p->points);
     free(p->point_count);
     free(p->patch_of);
+    free(p->part_of);
+    free(p->parts);
     memset(p, 0, sizeof *p);
 }
 
@@ -528,5 +533,9 @@ uint32_t patches_place(const patch_set *p, uint32_t of, float u, float v, float 
 }
 
 uint32_t patches_at(const patch_set *p, uint32_t side, float b1, float b2) {
-    return p->patch_of[cells_at(&p->cells, side, b1, b2)];
+    const uint32_t cell = cells_at(&p->cells, side, b1, b2), part = p->part_of[cell];
+    if (part == VIT_NONE)
+        return p->patch_of[cell];
+    const patch_part *of = p->parts + part;
+    return of->patch[separation_front(of->apart.normal, of->apart.offset, side_place(p->geometry, side, b1, b2)) ? 0 : 1];
 }

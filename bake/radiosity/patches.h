@@ -1,6 +1,7 @@
 /* patches.c: surfaces as a number of patches, each taken for one in all that radiosity computes: small flat pieces (cells) of
  * triangles' sides that light gets from to the path's cameras, clustered from the whole down where most such light leaves
- * surfaces that are large, bent, or hidden from each other, as the floor on both sides of a thin wall. Sides that no light
+ * surfaces that are large, bent, or hidden from each other, as the floor on both sides of a thin wall (patches_parted.c: cells
+ * right under the wall). Sides that no light
  * reaches, and mirrors and glass, belong to no patch. */
 #ifndef VIT_RADIOSITY_PATCHES_H
 #define VIT_RADIOSITY_PATCHES_H
@@ -8,6 +9,7 @@
 #include "geometry/cells.h"
 #include "light/photon_rays.h"
 #include "motion/tracks.h"
+#include "radiosity/separation.h"
 
 #define PATCHES_MOST 65536u
 
@@ -34,7 +36,14 @@ typedef struct patch_point {
     float b1, b2;
 } patch_point;
 
+/* A cell that something stands on belongs to a patch on either side of it. */
+typedef struct patch_part {
+    separation apart;
+    uint32_t patch[2]; /* in front of the plane, behind it; VIT_NONE: none */
+} patch_part;
+
 typedef struct patch_set {
+    const geometry *geometry;
     cells cells;
     radiosity_patch *patch; /* count + 1: the last has no cells */
     uint32_t count;
@@ -43,8 +52,11 @@ typedef struct patch_set {
     patch_point *points;   /* PATCHES_POINTS per patch: where paths from the cameras met it, as dense as they do */
     uint32_t *point_count; /* a patch: how many of its points are there */
     uint32_t *patch_of;    /* a cell: its patch, or VIT_NONE */
-    double area;           /* of all patches, m2 */
-    double hidden;         /* share of pairs of cells of a patch that something between them hides from each other, by area */
+    uint32_t *part_of;     /* a cell: which of parts it is, or VIT_NONE; then it belongs to no patch's cells */
+    patch_part *parts;
+    uint32_t part_count;
+    double area;   /* of all patches, m2 */
+    double hidden; /* share of pairs of cells of a patch that something between them hides from each other, by area */
 } patch_set;
 
 /* VIT_FAILED: out of memory. On failure there is nothing to free. A scene without a cell that reflects has no patch. */

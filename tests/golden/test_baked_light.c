@@ -18,6 +18,8 @@ static int set_up(void **state) {
     (void)fclose(f);
     rooms_scene(&lab, "both.cfg", AT_ITS_FOOT, 100.0, false);
     rooms_scene(&lab, "dim.cfg", AT_ITS_FOOT, 0.0, false);
+    rooms_scene(&lab, "both_live.cfg", AT_ITS_FOOT, 100.0, true);
+    rooms_scene(&lab, "dim_live.cfg", AT_ITS_FOOT, 0.0, true);
     *state = &lab;
     return 0;
 }
@@ -35,6 +37,10 @@ static void assert_no_leak(scene_lab *l, const char *with, const char *without, 
 
 static void nothing_to_speak_of_comes_through_a_thin_wall(void **state) {
     assert_no_leak(*state, "both.cfg", "dim.cfg", BASIS);
+}
+
+static void nor_does_light_between_patches(void **state) {
+    assert_no_leak(*state, "both_live.cfg", "dim_live.cfg", LIVE);
 }
 
 /* A lamp whose power alone changes, and one that stays: the same light where they say the same. */
@@ -68,6 +74,7 @@ static void a_light_that_changes_gives_what_one_that_stays_gives(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_to_speak_of_comes_through_a_thin_wall),
+        cmocka_unit_test(nor_does_light_between_patches),
         cmocka_unit_test(a_light_that_changes_gives_what_one_that_stays_gives),
     };
     return cmocka_run_group_tests_name("baked light", tests, set_up, scene_lab_tear_down);
