@@ -12,7 +12,7 @@
 #include "indirect_motion.h"
 
 /* Of the pixels along an edge, one in so many has the reference. */
-enum { STILL_EVERY = 2, MOTION_EVERY = 12 };
+enum { STILL_EVERY = 2, MOTION_EVERY = 8 };
 
 typedef struct trial {
     const untuned_scene *scene;
@@ -204,7 +204,7 @@ static void run_each(trial *t, int argc, char **argv) {
            "%-15s %-24s %7s %7s %7s %7s %8s %8s %8s\n",
            "", "", "noise", "step", "largest", "used", "change", "as", "own");
     t->every = bench_smoke() ? STILL_EVERY : MOTION_EVERY;
-    t->size = bench_smoke() ? "48x36" : "768x576";
+    t->size = bench_smoke() ? "48x36" : "512x384";
     for (size_t i = 0; i < UNTUNED_MOTIONS; i++) {
         untuned_scene s = untuned_motions[i];
         s.frames = bench_smoke() ? MOTION_SPAN : s.frames;
