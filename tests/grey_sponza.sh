@@ -18,7 +18,7 @@ try() { # name, quality
         echo ");"
         echo "camera: { keys = ( { eye = [-10.0, 2.0, -0.5]; target = [5.0, 4.0, -0.5]; fov = 60.0; } ); };"
         echo "lights = ( { type = \"point\"; keys = ( { position = [0.0, 10.0, 0.0]; power = [3000.0, 3000.0, 3000.0]; } ); } );"
-        echo "quality: { bounces = 4; radius = 1.5; tile = 32; estimate = \"list\"; $2 };"
+        echo "quality: { indirect = \"photons\"; bounces = 4; radius = 1.5; tile = 32; estimate = \"list\"; $2 };"
     } > "$out/$1.cfg"
     "$tools/vitrine-cost" "$out/$1.cfg" --quiet --settings 1 --every 2 --reference-error 0.002 --repeats 7 -o "$out/$1"
     echo "== $1: $2"

@@ -20,7 +20,7 @@ row() { # name, then a command that plays $pack and exits 0 if every hash is the
     esac
 }
 absent() { echo "absent   $1"; }
-bake() { "$tools/vitrine-bake" "$tools/scenes/$1.cfg" -o "$out/$2.vit" --quiet --no-check --device host --frames 2 $3 || exit 1; }
+bake() { "$tools/vitrine-bake" "$tools/scenes/$1.cfg" -o "$out/$2.vit" --quiet --no-check --device host --frames 2 --indirect photons $3 || exit 1; }
 whole() { # the packs that a smoke run leaves out
     bake cornell list "--size 128x96 --photons 4000 --indirect-samples 1"
     bake cornell zones "--size 100x70 --photons 4000 --zones 2 --effective-area 1 --kernel flattened --indirect-samples 4"
@@ -64,8 +64,8 @@ lights = (
     { type = "directional"; keys = ( { position = [1.0, 3.0, 2.0]; target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); } );
 quality: { photons = 4000; antialias = 4; light_samples = 4; sky_samples = 4; };
 EOF
-"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/shine.vit" --quiet --no-check --device host || exit 1
-"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-shine.vit" --quiet --no-check --device host $tiny || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/shine.vit" --quiet --no-check --device host --indirect photons || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-shine.vit" --quiet --no-check --device host --indirect photons $tiny || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/basis-shine.vit" --quiet --no-check --device host $basis || exit 1
 [ "${VITRINE_MATRIX:-}" = smoke ] ||
     "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/live-shine.vit" --quiet --no-check --device host $live || exit 1

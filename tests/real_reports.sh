@@ -14,7 +14,7 @@ output: { width = 1280; height = 720; fps = 24.0; frames = 1; };
 meshes = ( { file = "$scenes/$name/$1"; } );
 camera: { keys = ( { eye = [$2]; target = [$3]; fov = 60.0; exposure = $4; } ); };
 lights = ( { type = "point"; keys = ( { position = [$5]; power = [3000.0, 2800.0, 2400.0]; } ); } );
-quality: { photons = 17000; bounces = 4; radius = $6; tile = 32; estimate = "list"; };
+quality: { indirect = "photons"; photons = 17000; bounces = 4; radius = $6; tile = 32; estimate = "list"; };
 CFG
     shift 6
     "$tools/vitrine-cost" "$out/$name.cfg" -o "$out/$name" \

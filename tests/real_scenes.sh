@@ -13,7 +13,7 @@ output: { width = 1280; height = 720; fps = 24.0; frames = 24; };
 meshes = ( { file = "$scenes/$1/$2"; } );
 camera: { keys = ( { eye = [$3]; target = [$4]; fov = 60.0; exposure = $5; } ); };
 lights = ( { type = "point"; keys = ( { time = 0.0; position = [$6]; power = [3000.0, 2800.0, 2400.0]; }, { time = 1.0; position = [$7]; } ); } );
-quality: { photons = 17000; bounces = 4; radius = "auto"; tile = 32; estimate = "list"; };
+quality: { indirect = "photons"; photons = 17000; bounces = 4; radius = "auto"; tile = 32; estimate = "list"; };
 CFG
 }
 scene sponza sponza.gltf "-10.0, 2.0, -0.5" "5.0, 4.0, -0.5" 1.2 "-4.0, 8.0, 0.0" "4.0, 8.0, 0.0"

@@ -104,11 +104,12 @@ static inline void scene_lab_run(scene_lab *l, const char *program, const char *
     fail_msg("%s %s\nexit %d\n%s", path, line, WIFEXITED(status) ? WEXITSTATUS(status) : -1, text);
 }
 
-/* Bakes `scene`, a file of the folder or a whole path, with more options; then scene_lab_said(). */
+/* Bakes `scene`, a file of the folder or a whole path, with more options; then scene_lab_said(). By photons, unless an option
+ * says otherwise. */
 static inline void scene_lab_bake(scene_lab *l, const char *scene, const char *options) {
     char line[1024];
     const char *pack = scene_lab_path(l, "scene.vit");
-    (void)snprintf(line, sizeof line, "%s -o %s --quiet --no-check --device host %s",
+    (void)snprintf(line, sizeof line, "%s -o %s --quiet --no-check --device host --indirect photons %s",
                    scene[0] == '/' || strchr(scene, '/') ? scene : scene_lab_path(l, scene), pack, options);
     scene_lab_run(l, "vitrine-bake", line);
 }

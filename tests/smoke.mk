@@ -28,9 +28,9 @@ smoke-soak:
 smoke-no-opencl: $(B)/vitrine-bake $(SCENES_MADE)
 	@! $(MAKE) --no-print-directory -n deps OPENCL=0 | grep -iE 'opencl|pocl'
 	@$(MAKE) $(SIDE_BY_SIDE) OPENCL=0 $(SMOKE_NO_OPENCL) tools
-	@$(B)/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
+	@$(B)/vitrine-bake $(B)/scenes/cornell.cfg -o $(B)/smoke.vit --quiet --no-check --size 64x48 --frames 2 --indirect photons --photons 2000
 	@build/debug-no-opencl/vitrine-play $(B)/smoke.vit --verify
-	@build/debug-no-opencl/vitrine-bake $(B)/scenes/cornell.cfg -o build/debug-no-opencl/smoke.vit --quiet --no-check --size 64x48 --frames 2 --photons 2000
+	@build/debug-no-opencl/vitrine-bake $(B)/scenes/cornell.cfg -o build/debug-no-opencl/smoke.vit --quiet --no-check --size 64x48 --frames 2 --indirect photons --photons 2000
 	@cmp $(B)/smoke.vit build/debug-no-opencl/smoke.vit
 smoke-lint:
 	@$(MAKE) --no-print-directory lint LINTED="$(SMOKE_LINTED)"

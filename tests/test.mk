@@ -78,7 +78,7 @@ SANITIZED_PLAYS := $(addprefix sanitized-play/,list zones raw sparse basis atriu
 $(SANITIZED_PLAYS): sanitized-play/%: $(B)/vitrine-bake $(SCENES_MADE)
 	@mkdir -p build/sanitize/packs
 	@tests/run.sh $@ sh -ec '$(B)/vitrine-bake $(B)/scenes/$(firstword $(SANITIZED_$*)).cfg -o build/sanitize/packs/$*.vit --quiet --no-check --device host \
-	  --size 96x64 --frames 1 --photons 2000 $(wordlist 2,99,$(SANITIZED_$*)); \
+	  --size 96x64 --frames 1 --indirect photons --photons 2000 $(wordlist 2,99,$(SANITIZED_$*)); \
 	  for l in 1 8; do build/sanitize/vitrine-play --quiet build/sanitize/packs/$*.vit --verify --device host --threads 3 --lanes $$l; done'
 run-tests: $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE) $(RUNS) $(SANITIZED_PLAYS)
 .PHONY: $(RUNS) $(SANITIZED_PLAYS)

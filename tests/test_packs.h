@@ -53,7 +53,7 @@ static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\
     "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
     "lights = (" ROOM_STILL ", " ROOM_MOVING ", { type = \"directional\"; keys = ( { position = [0.3, 3.0, 2.0];"              \
     " target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); });\n"                                                      \
-    "quality: { photons = 2000; radius = 0.4; tile = 16; indirect_samples = 4; antialias = 2; "                                \
+    "quality: { indirect = \"photons\"; photons = 2000; radius = 0.4; tile = 16; indirect_samples = 4; antialias = 2; "        \
     "light_samples = 4; sky_samples = 4; };\n"
 
 /* 8 x 8 texels of blue, green, red and alpha behind a TGA header: squares of 4 x 4 are opaque or holes in turn. */
@@ -72,7 +72,7 @@ static inline void test_packs_holes(unsigned char out[HOLES_BYTES]) {
     "output: { width = 96; height = 64; frames = 2; };\n"                                                                      \
     "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
     "lights = (" lights ");\n"                                                                                                 \
-    "quality: { photons = 2000; radius = 0.4; tile = 16; };\n"
+    "quality: { indirect = \"photons\"; photons = 2000; radius = 0.4; tile = 16; };\n"
 #define ROOM_STILL "{ type = \"point\"; range = 9.0; keys = ( { position = [0.4, 1.7, 0.5]; power = [40.0, 50.0, 60.0]; } ); }"
 #define ROOM_MOVING                                                                                                            \
     "{ type = \"spot\"; inner = 30.0; outer = 60.0;"                                                                           \
@@ -97,7 +97,7 @@ static const struct {
 static const struct {
     const char *name, *input, *options;
 } test_packs[] = {
-#define PLAIN "--zones 0 --effective-area 0 --bounce-sequence 0 --indirect-samples 1 "
+#define PLAIN "--indirect photons --zones 0 --effective-area 0 --bounce-sequence 0 --indirect-samples 1 "
 #define CORNELL TEST_SCENES "/cornell.cfg", "--size 160x120 --frames 3 --photons 5000 " PLAIN
     {"list", CORNELL "--all-formats"},
     {"buckets", CORNELL "--all-formats --estimate buckets"},
@@ -153,9 +153,11 @@ static const struct {
 #undef PLAIN
     {"shine", TEST_PACKS "/shine.cfg", "--all-formats"},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
-    {"mesh", TEST_PACKS "/room.obj", "--size 96x64 --frames 2 --photons 2000"},
-    {"atrium", TEST_SCENES "/atrium.cfg", "--size 256x144 --frames 2 --indirect-samples 1"},
-    {"whole-tiles", TEST_SCENES "/cornell.cfg", "--size 160x128 --frames 4 --photons 5000 --indirect-samples 1"},
+    {"mesh", TEST_PACKS "/room.obj", "--indirect photons --size 96x64 --frames 2 --photons 2000"},
+    {"by-default", TEST_PACKS "/room.obj", "--size 97x63 --frames 2"}, /* nothing stated */
+    {"atrium", TEST_SCENES "/atrium.cfg", "--indirect photons --size 256x144 --frames 2 --indirect-samples 1"},
+    {"whole-tiles", TEST_SCENES "/cornell.cfg",
+     "--indirect photons --size 160x128 --frames 4 --photons 5000 --indirect-samples 1"},
 };
 enum { TEST_PACK_COUNT = sizeof test_packs / sizeof test_packs[0] };
 

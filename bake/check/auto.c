@@ -75,6 +75,11 @@ static vit_status measure(const search *s, const scene_quality *q, bool parts, c
     return status;
 }
 
+/* Is light looked up where it was baked or is gathered, and not photons' at all? */
+static bool at_receivers(const scene_quality *q) {
+    return q->indirect == INDIRECT_BASIS || q->indirect == INDIRECT_RADIOSITY;
+}
+
 /* Is it the basis, by the baker's own choice? */
 static bool may_fall_back(const search *s) {
     return s->base.indirect == INDIRECT_BASIS && s->p->indirect_why[0];
@@ -130,10 +135,9 @@ static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
 /* The reference, if it is not there yet, and what follows from it and from the plainest pack. */
 static vit_status begin(search *s, vit_text *why) {
     pipeline_packed packed;
-    const bool by_basis = s->base.indirect == INDIRECT_BASIS;
-    if (by_basis && !kept(s, SETTING_BIT(bounces)))
+    if (s->base.indirect == INDIRECT_BASIS && !kept(s, SETTING_BIT(bounces)))
         s->base.bounces = PLAN_ALL_BOUNCES;
-    vit_status status = by_basis ? pack(s, &s->base, &packed, why) : pack_guided(s, &packed, why);
+    vit_status status = at_receivers(&s->base) ? pack(s, &s->base, &packed, why) : pack_guided(s, &packed, why);
     if (status != VIT_OK)
         return status;
     if (s->out->check.paths == 0)
@@ -145,7 +149,7 @@ static vit_status begin(search *s, vit_text *why) {
     s->first = s->base;
     s->photons = (packed.plan.scene.effects & VIT_BIT(PHOTONS)) != 0;
     s->radius = (double)packed.plan.scene.radius;
-    if (status == VIT_OK && s->photons)
+    if (status == VIT_OK && (s->photons || s->base.indirect == INDIRECT_RADIOSITY))
         status = choose_bounces(s, &packed, why);
     if (status == VIT_OK)
         status = choose_samples(s, &packed, s->found.direct, why);
@@ -212,8 +216,12 @@ static vit_status climb(search *s, vit_text *why) {
     return VIT_OK;
 }
 
-/* The basis as it is; with receivers closer to each other if it is off. */
-static vit_status refine_basis(search *s, vit_text *why) {
+/* With as many bounces as were chosen, and with receivers closer to each other if the picture is off. */
+static vit_status refine_receivers(search *s, vit_text *why) {
+    const vit_status again =
+        s->base.bounces != s->first.bounces ? measure(s, &s->base, true, &s->found, why) : VIT_OK;
+    if (again != VIT_OK)
+        return again;
     for (int i = 0; i < FINER && s->found.worst > CHECK_LIMIT && !kept(s, SETTING_BIT(receiver_spacing)); i++) {
         scene_quality q = s->base;
         check_found found;
@@ -227,10 +235,10 @@ static vit_status refine_basis(search *s, vit_text *why) {
     return VIT_OK;
 }
 
-/* The basis is right, or photons have to show that they are nearer to it. */
-static vit_status take_basis(search *s, vit_text *why) {
+/* What was baked is right, or photons have to show that they are nearer to it. */
+static vit_status take_receivers(search *s, vit_text *why) {
     auto_found *a = s->out;
-    vit_status status = refine_basis(s, why);
+    vit_status status = refine_receivers(s, why);
     a->found = s->found;
     a->right = distance(&s->found) <= AUTO_LIMIT;
     s->p->scene.quality = s->base;
@@ -268,7 +276,7 @@ vit_status auto_choose(pipeline *p, auto_found *out, vit_text *why) {
     p->progress = &within;
     vit_status status = begin(&s, why);
     if (status == VIT_OK)
-        status = s.base.indirect == INDIRECT_BASIS ? take_basis(&s, why) : climb(&s, why);
+        status = at_receivers(&s.base) ? take_receivers(&s, why) : climb(&s, why);
     progress_end(&within);
     p->progress = loud;
     progress_end(loud);

@@ -44,6 +44,7 @@ bool baked_kept_get(baked_kept *k, const baked_input *in, uint64_t effects, bake
     for (int i = 0; i < BAKED_KEPT; i++)
         if (is_of(k->one + i, in, effects) && copy(&k->one[i].baked, in, out)) {
             k->one[i].asked = ++k->asked;
+            k->found++;
             return true;
         }
     return false;

@@ -16,7 +16,7 @@ typedef struct baked_kept_one {
 /* Zero to begin with. All are of one scene's triangles, materials and tracks. */
 typedef struct baked_kept {
     baked_kept_one one[BAKED_KEPT];
-    uint64_t asked;
+    uint64_t asked, found; /* times */
 } baked_kept;
 
 /* A copy of what was baked of `in` with these effects, if it is there. */

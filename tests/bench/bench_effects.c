@@ -151,7 +151,7 @@ static void write_scene(size_t i) {
         f,
         "output: { width = %d; height = %d; frames = 2; };\nmeshes = ( { file = \"room.obj\"; }, { file = \"balls.obj\"; } );\n"
         "camera: { keys = ( { eye = [0.0, 0.9, 3.3]; target = [0.0, 0.75, 0.0]; fov = 40.0; } ); };\nlights = ( %s );\n"
-        "materials = ( %s );\n%s\nquality: { bounces = 4; %s%s };\n",
+        "materials = ( %s );\n%s\nquality: { indirect = \"photons\"; bounces = 4; %s%s };\n",
         width(), height(), rows[i].lights, rows[i].materials, rows[i].scene,
         strstr(rows[i].quality, "photons") ? "" : "photons = 20000; radius = 0.2; ", rows[i].quality);
     fclose(f);

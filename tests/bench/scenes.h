@@ -70,7 +70,8 @@ static inline void scene_write(const bench_scene *s, const char *mesh, const cha
              "name = \"%s\";\noutput: { frames = %u; fps = 24.0; };\nbackground = [0.1, 0.1, 0.1];\nmeshes = ( { file = "
              "\"%s\"; } );\n"
              "camera: { keys = ( { %s } ); };\nlights = ( { type = \"point\"; keys = ( %s ); } );\n"
-             "quality: { photons = 17000; bounces = 4; radius = \"auto\"; tile = 32; estimate = \"list\"; };\n",
+             "quality: { indirect = \"photons\"; photons = 17000; "
+             "bounces = 4; radius = \"auto\"; tile = 32; estimate = \"list\"; };\n",
              s->name, BENCH_FRAMES, mesh, s->camera, s->light);
     if (file_says(path, text))
         return;

@@ -23,7 +23,7 @@ static void write_scene(scene_lab *l, const char *quality) {
 /* scene_lab_bake() checks nothing, and so chooses nothing. */
 static void bake(scene_lab *l, const char *options) {
     char line[1024];
-    (void)snprintf(line, sizeof line, "%s -o %s --device host %s", scene_lab_path(l, "scene.cfg"),
+    (void)snprintf(line, sizeof line, "%s -o %s --device host --indirect photons %s", scene_lab_path(l, "scene.cfg"),
                    scene_lab_path(l, "scene.vit"), options);
     scene_lab_run(l, "vitrine-bake", line);
 }
@@ -73,7 +73,7 @@ static void what_is_stated_stays(void **state) {
     write_scene(l, "quality: { auto = true; bounces = 5; photons = 3000; zones = false; };\n");
     bake(l, "--radius 0.6 --effective-area 0 --guiding 0");
     told(l, "quality \"auto\"", line); /* a warning: these settings cannot be right */
-    assert_non_null(strstr(line, "photons = 3000; radius = 0.6; bounces = 5; }"));
+    assert_non_null(strstr(line, "photons = 3000; radius = 0.6; indirect = \"photons\"; bounces = 5; }"));
     assert_non_null(strstr(line, "warning"));
     write_scene(l, "quality: { photons = 3000; };\n"); /* a block says all itself */
     bake(l, "");

@@ -248,16 +248,20 @@ static void wait_for(const char *text) {
 /* A baker that cannot be through by the time the signal comes: it stops itself before its output gets its name. */
 #define STOPPED_AT_RENAME                                                                                                      \
     "SIGNAL_FOLDER=" FOLDER " SIGNAL_AT=before-rename SIGNAL_NUMBER=%d LD_PRELOAD=" TOOL_SIGNAL_AT " " TOOL_BAKE               \
-    " " TEST_SCENES "/cornell.cfg --size 64x48 --frames 30 --device host" OUT
+    " " TEST_SCENES "/cornell.cfg --size 64x48 --frames 30 --device host --indirect %s" OUT
 
 static void an_interrupted_bake_exits_with_1_and_leaves_no_file(void **state) {
     (void)state;
     static const struct {
         const char *done; /* a stage is told when it is done: the next one is running then */
+        const char *indirect;
         int number;
-    } moments[] = {{"import ", SIGINT}, {"depth slices ", SIGINT}, {"depth slices ", SIGTERM}};
+    } moments[] = {{"import ", "photons", SIGINT},
+                   {"depth slices ", "photons", SIGINT},
+                   {"depth slices ", "photons", SIGTERM},
+                   {"atlas ", "basis", SIGINT}}; /* while light is baked */
     for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++) {
-        tool_line(&r, STOPPED_AT_RENAME, SIGSTOP);
+        tool_line(&r, STOPPED_AT_RENAME, SIGSTOP, moments[i].indirect);
         tool_begin(&r);
         wait_for(moments[i].done);
         assert_int_equal(kill(r.child, moments[i].number), 0);

@@ -23,8 +23,8 @@ static void write_scene(scene_lab *l, const char *exposure, const char *at, cons
 /* scene_lab_bake() checks nothing. */
 static void bake(scene_lab *l, const char *options) {
     char line[512];
-    (void)snprintf(line, sizeof line, "%s -o %s --device host --quality stated %s", scene_lab_path(l, "scene.cfg"),
-                   scene_lab_path(l, "scene.vit"), options);
+    (void)snprintf(line, sizeof line, "%s -o %s --device host --quality stated --indirect photons %s",
+                   scene_lab_path(l, "scene.cfg"), scene_lab_path(l, "scene.vit"), options);
     scene_lab_run(l, "vitrine-bake", line);
 }
 

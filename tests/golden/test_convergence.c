@@ -54,8 +54,8 @@ static int play(void **state) {
     (void)state;
     folder_make_temporary(folder);
     load(&p, VIT_BUILD_DIR "/scenes/cornell.cfg", 60, 48);
-    p.scene.quality.photons = 3000;
-    p.scene.quality.bounces = 5; /* few: what later reflections would give is to be measured, too */
+    p.scene.quality.photons = 3000; /* a sweep of photons, whatever the scene says */
+    p.scene.quality.bounces = 5;    /* few: what later reflections would give is to be measured, too */
     converge(&p, CONVERGE_SHRINK, &found);
     converge(&p, 0, &fixed);
     pipeline_free(&p);

@@ -103,7 +103,7 @@ static void bake(scene_lab *l, const char *lights, const char *thing, const char
         "output: { width = 80; height = 64; frames = %d; };\nmeshes = ( { file = \"stage.obj\"; } );\n"
         "camera: { keys = ( { eye = [0.6, 1.6, 4.5]; target = [0.0, 0.8, 0.0]; fov = 45.0; } ); };\nlights = ( %s );\n"
         "materials = ( { name = \"thing\"; %s }, { name = \"secret\"; %s } );\n%s\n"
-        "quality: { photons = 1500; radius = 0.4; tile = 16; indirect_samples = 1; %s };\n",
+        "quality: { indirect = \"photons\"; photons = 1500; radius = 0.4; tile = 16; indirect_samples = 1; %s };\n",
         FRAMES, lights, thing, secret, more, quality);
     (void)fclose(f);
     scene_lab_bake(l, "stage.cfg", "--explain");

@@ -58,7 +58,7 @@ static double part(const char *line) {
 static void matt_surfaces_and_still_lights_are_baked(void **state) {
     char line[512];
     write_scene(*state, "", 2, STILL, "");
-    bake(*state, "--indirect auto");
+    bake(*state, ""); /* "auto" is the default */
     chosen(*state, "basis", line);
     assert_non_null(strstr(line, "lights are still\n"));
 }

@@ -132,11 +132,54 @@ static void kept_zones_are_those_that_would_be_baked(void **state) {
     pipeline_free(&l.pipeline);
 }
 
+/* The same of baked light: what does not touch it finds it, what does does not. */
+static void kept_light_is_that_which_would_be_baked(void **state) {
+#define BASIS "indirect = \"basis\"; receiver_rays = 32; "
+    static const struct {
+        const char *text;
+        bool found; /* among what is kept */
+    } settings[] = {{BASIS, false},
+                    {BASIS "photons = 1000; tile = 8; sample_bits = 16;", true},
+                    {BASIS "receiver_spacing = 24.0;", false},
+                    {BASIS "light_samples = 4;", true},
+                    {BASIS "bounces = 2;", false},
+                    {BASIS "basis_error = 0.1;", false},
+                    {BASIS "vertex_bits = 16;", false}, /* which is not kept either */
+                    {BASIS "receiver_spacing = 20.0;", false},
+                    {BASIS "receiver_spacing = 24.0;", false}}; /* kept no more */
+#undef BASIS
+    const uint32_t frames[] = {1, 4};
+    uint64_t found = 0;
+    lab l;
+    (void)state;
+    lab_open(&l, 48, 32);
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
+        lab fresh;
+        pipeline_packed of_many, alone;
+        pipeline_choice choice = pipeline_default(&l.pipeline);
+        assert_int_equal(scene_quality_apply(settings[i].text, &choice.quality, &l.why), VIT_OK);
+        choice.frames = i % 2 ? frames : NULL; /* frames that are left out are still in what is kept */
+        choice.frame_count = 2;
+        lab_open(&fresh, 48, 32);
+        pack(&fresh, &choice, &alone);
+        pack(&l, &choice, &of_many);
+        assert_int_equal(l.pipeline.kept_baked->found > found, settings[i].found);
+        found = l.pipeline.kept_baked->found;
+        assert_int_equal(of_many.size, alone.size);
+        assert_memory_equal(of_many.bytes, alone.bytes, alone.size);
+        pipeline_packed_free(&of_many);
+        pipeline_packed_free(&alone);
+        pipeline_free(&fresh.pipeline);
+    }
+    pipeline_free(&l.pipeline);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_chosen_frame_has_the_bits_that_it_has_among_all),
         cmocka_unit_test(a_pack_does_not_depend_on_those_made_before),
         cmocka_unit_test(kept_zones_are_those_that_would_be_baked),
+        cmocka_unit_test(kept_light_is_that_which_would_be_baked),
         cmocka_unit_test(another_size_is_what_that_size_bakes_to_on_its_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,7 @@ static int begin(void **state) {
     assert_int_equal(scene_for_mesh("none.obj", &s, &why), VIT_OK);
     base = s.quality;
     scene_free(&s);
-    return scene_quality_apply("photons = 10000; bounces = 4; radius = 0.8; tile = 32", &base, &why);
+    return scene_quality_apply("indirect = \"photons\"; photons = 10000; bounces = 4; radius = 0.8; tile = 32", &base, &why);
 }
 
 static knob_list make_for(uint64_t effects, const scene_quality *q, double radius, const char *only, uint32_t most) {

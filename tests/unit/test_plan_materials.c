@@ -53,6 +53,7 @@ static void plan_scene(const char *text, planned *x) {
                            .dark_sides = &r,
                            .sky = &(const environment){0},
                            .threads = 1};
+    x->s.quality.indirect = INDIRECT_PHOTONS;
     if (status == VIT_OK)
         status = plan_make(&in, &x->p, &why);
     if (status != VIT_OK)

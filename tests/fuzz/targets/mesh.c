@@ -174,6 +174,7 @@ static void bake_model(bake *k) {
     k->s.width = WIDTH;
     k->s.height = HEIGHT;
     k->s.frames = 1;
+    k->s.quality.indirect = INDIRECT_PHOTONS;
     k->s.quality.photons = PHOTONS;
     k->s.quality.bounces = BOUNCES;
     k->s.quality.zones = k->s.quality.effective_area = k->whole;
