@@ -218,8 +218,7 @@ static vit_status climb(search *s, vit_text *why) {
 
 /* With as many bounces as were chosen, and with receivers closer to each other if the picture is off. */
 static vit_status refine_receivers(search *s, vit_text *why) {
-    const vit_status again =
-        s->base.bounces != s->first.bounces ? measure(s, &s->base, true, &s->found, why) : VIT_OK;
+    const vit_status again = s->base.bounces != s->first.bounces ? measure(s, &s->base, true, &s->found, why) : VIT_OK;
     if (again != VIT_OK)
         return again;
     for (int i = 0; i < FINER && s->found.worst > CHECK_LIMIT && !kept(s, SETTING_BIT(receiver_spacing)); i++) {

@@ -261,7 +261,7 @@ static void ways_of_making_indirect_light_are_compared(void **state) {
     tool_succeeds(&run);
     assert_non_null(strstr(run.err, "indirect light by basis: nothing to turn is left to photons\n"));
     read_csv(LAB "/methods/report.csv");
-    assert_int_equal(csv.rows, 1 + 3 + 2);
+    assert_int_equal(csv.rows, 1 + 3 + 3);
     const int list = row_of("indirect photons list"), buckets = row_of("indirect photons buckets"), tile = row_of("tile 8");
     assert_true(at(list, "total_nmse") > at(0, "total_nmse") && at(buckets, "total_nmse") != at(list, "total_nmse"));
     assert_true(at(list, "device_bytes") != at(0, "device_bytes"));
@@ -270,6 +270,7 @@ static void ways_of_making_indirect_light_are_compared(void **state) {
     char *page = read_file(LAB "/methods/index.html", NULL);
     assert_non_null(strstr(page, ">default: basis<"));
     assert_non_null(strstr(page, ">indirect photons list<"));
+    assert_non_null(strstr(page, ">indirect radiosity<"));
     free(page);
 }
 
