@@ -485,9 +485,10 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
         for (uint32_t i = 0; i < out->cells.count; i++)
             if (out->patch_of[i] == VIT_NONE && is_in(in, out->cells.side_of[i]))
                 out->patch_of[i] = place(&k, i);
-        patches_place_parts(in, edge, out);
+        fine = patches_place_parts(in, edge, out);
         keep_points(&k);
-    } else {
+    }
+    if (!fine) {
         status = bake_fail(why, VIT_FAILED, "patches: out of memory");
     }
     free(k.order);
