@@ -67,7 +67,16 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
                                   global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p) {
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
-    li own;
+    lu kind = l_gather_u(cells, at.index * 4 + 3);
+    li own, divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_DIVIDED, but not VIT_NONE */
+    if (l_any(divided)) {
+        cell_place within =
+            cell_among(L_AS_INT(l_gather_u(cells, divided & (at.index * 4))), L_AS_INT(kind & 255u), at.w1, at.w2);
+        at.index = l_sel_i(divided, within.index, at.index);
+        at.w0 = l_sel(divided, within.w0, at.w0);
+        at.w1 = l_sel(divided, within.w1, at.w1);
+        at.w2 = l_sel(divided, within.w2, at.w2);
+    }
     while (l_any(lanes)) {
         global const uint *cell = cells + (size_t)surface_next(&lanes, at.index, &own) * 4;
         global const uint *of = cell;

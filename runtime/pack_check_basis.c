@@ -10,11 +10,37 @@ static vit_status check_receivers(const vit_scene *s, const vit_u32 receiver[3],
     return VIT_OK;
 }
 
+static int is_divided(const vit_receiver_cell *c) {
+    return c->split != VIT_NONE && (c->split & VIT_RECEIVER_DIVIDED) != 0;
+}
+
+/* Cells of a divided one lie behind all that are divided, so that none of them is. */
+static vit_status check_divided(const vit_scene *s, const vit_receiver_cell *c, vit_u32 i, vit_u32 last, vit_text *why) {
+    const vit_u32 parts = c->split & ~VIT_RECEIVER_DIVIDED;
+    if (parts < 1 || parts > VIT_RECEIVER_PARTS)
+        return vit_pack_refuse(why, "section RCEL: record %u: %u parts, expected 1..%u", i, parts, VIT_RECEIVER_PARTS);
+    if (c->receiver[0] <= last || (uint64_t)c->receiver[0] + (uint64_t)parts * parts > s->receiver_cells)
+        return vit_pack_refuse(why, "section RCEL: record %u: its cells must be behind record %u and before %u", i, last,
+                               s->receiver_cells);
+    if (c->receiver[1] != 0 || c->receiver[2] != 0)
+        return vit_pack_refuse(why, "section RCEL: record %u: padding is not 0", i);
+    return VIT_OK;
+}
+
 vit_status vit_pack_check_RCEL(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
     const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
+    vit_u32 last = 0;
+    for (vit_u32 i = 0; i < s->receiver_cells; i++)
+        last = is_divided(VIT_RECORD(vit_receiver_cell, cells, i)) ? i : last;
     for (vit_u32 i = 0; i < s->receiver_cells; i++) {
         const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
+        if (is_divided(c)) {
+            const vit_status status = check_divided(s, c, i, last, why);
+            if (status != VIT_OK)
+                return status;
+            continue;
+        }
         const vit_status status = check_receivers(s, c->receiver, "RCEL", i, why);
         if (status != VIT_OK)
             return status;

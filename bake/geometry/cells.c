@@ -78,17 +78,36 @@ uint32_t cells_at(const cells *c, uint32_t side, float b1, float b2) {
     return (c->sides[side] & VIT_SIDE_CELL) + (uint32_t)(i * (n * 2 - i) + j * 2 + upper);
 }
 
+void cells_nodes(uint32_t parts, uint32_t k, uint32_t i[3], uint32_t j[3]) {
+    uint32_t row = 0;
+    while (k >= 2 * (parts - row) - 1)
+        k -= 2 * (parts - row++) - 1;
+    const uint32_t upper = k & 1;
+    i[0] = row + upper;
+    j[0] = k / 2 + upper;
+    i[1] = row + 1;
+    j[1] = k / 2;
+    i[2] = row;
+    j[2] = k / 2 + 1;
+}
+
+cell_corners cells_within(const cell_corners *t, uint32_t parts, uint32_t k) {
+    const float s = 1.0f / (float)parts;
+    cell_corners r;
+    uint32_t i[3], j[3];
+    cells_nodes(parts, k, i, j);
+    for (int c = 0; c < 3; c++) {
+        const float x = (float)i[c] * s, y = (float)j[c] * s;
+        r.b1[c] = t->b1[0] + x * (t->b1[1] - t->b1[0]) + y * (t->b1[2] - t->b1[0]);
+        r.b2[c] = t->b2[0] + x * (t->b2[1] - t->b2[0]) + y * (t->b2[2] - t->b2[0]);
+    }
+    return r;
+}
+
 cell_corners cells_corners(const cells *c, uint32_t cell) {
+    static const cell_corners whole = {{0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
     const vit_u32 side = c->sides[c->side_of[cell]];
-    const int n = (int)(side >> VIT_SIDE_PARTS_SHIFT);
-    int k = (int)(cell - (side & VIT_SIDE_CELL)), i = 0;
-    while (k >= 2 * (n - i) - 1)
-        k -= 2 * (n - i++) - 1;
-    const int j = k / 2, upper = k & 1;
-    const float s = 1.0f / (float)n, x0 = (float)i * s, y0 = (float)j * s, x1 = (float)(i + 1) * s, y1 = (float)(j + 1) * s;
-    if (upper)
-        return (cell_corners){{x1, x1, x0}, {y1, y0, y1}};
-    return (cell_corners){{x0, x1, x0}, {y0, y0, y1}};
+    return cells_within(&whole, side >> VIT_SIDE_PARTS_SHIFT, cell - (side & VIT_SIDE_CELL));
 }
 
 vec3 side_place(const geometry *g, uint32_t side, float b1, float b2) {

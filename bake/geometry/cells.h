@@ -26,6 +26,11 @@ void cells_free(cells *c);
 /* The cell at barycentric weights b1, b2 of a side; the arithmetic of kernels/cells.clh. */
 uint32_t cells_at(const cells *c, uint32_t side, float b1, float b2);
 cell_corners cells_corners(const cells *c, uint32_t cell);
+/* Cell k of those that a triangle is divided into, `parts` along each edge, in the order of kernels/cells.clh. Its corners in
+ * units of 1 / parts of the way from the triangle's first corner to the second (i), and to the third (j). */
+void cells_nodes(uint32_t parts, uint32_t k, uint32_t i[3], uint32_t j[3]);
+/* Its corners where the triangle has these. */
+cell_corners cells_within(const cell_corners *triangle, uint32_t parts, uint32_t k);
 vec3 cells_center(const cells *c, const geometry *g, uint32_t cell);
 float cells_area(const cells *c, const geometry *g, uint32_t cell); /* m2 */
 

@@ -166,6 +166,7 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .height = c->height,
                       .still = still,
                       .moving = moving,
+                      .live = is_live,
                       .size = (double)out->plan.sky_radius,
                       .reflections = out->plan.reflections,
                       .spacing = b->scene.quality.receiver_spacing,
@@ -178,7 +179,7 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .user = p->progress};
     if (still && moving)
         in.still_count = sources(b, still, moving, &moving_count);
-    in.moving_count = is_live ? 0 : moving_count;
+    in.moving_count = moving_count;
     const double began = progress_now();
     vit_status status = still && moving ? find_or_get(b, &s, &in, why) : out_of_memory(why);
     out->seconds += fmax(out->baked.seconds - (progress_now() - began), 0);

@@ -9,6 +9,8 @@
 #define CELLS_LEAST 8192u
 #define CELLS_MOST 65536u
 #define BOUNCE_RAYS 128u /* per cell, about */
+#define FEWER 4u         /* rays and cells of the first look, which tells where receivers must be near each other */
+#define FIRST_LOOK 0.15  /* share of the time, about */
 
 /* States of the lights: what stays first, then each moving light at its knots, with an intensity of 1. */
 typedef struct states {
@@ -64,13 +66,26 @@ static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
     return VIT_OK;
 }
 
+static void hang(const receivers *r, float *irradiance, uint32_t columns) {
+    for (uint32_t i = 0; i < r->hanging_count; i++) {
+        const receiver_hanging *h = r->hanging + i;
+        const float *a = irradiance + (size_t)h->from[0] * columns, *b = irradiance + (size_t)h->from[1] * columns;
+        for (uint32_t c = 0; c < columns; c++)
+            irradiance[(size_t)h->receiver * columns + c] = a[c] + (b[c] - a[c]) * h->weight;
+    }
+}
+
+static uint32_t baked_lights(const baked_input *in) {
+    return in->live ? 0 : in->moving_count;
+}
+
 /* As sections have it. */
 static vit_status keep(const baked_input *in, const states *s, const float *irradiance, baked *out, vit_text *why) {
     const uint32_t columns = 3 * s->count, count = out->receivers.count,
                    padded = (count + VIT_BASIS_GROUP - 1) / VIT_BASIS_GROUP * VIT_BASIS_GROUP;
     out->still = calloc(padded, sizeof *out->still);
-    out->frames = malloc(((size_t)in->frames * in->moving_count + 1u) * sizeof *out->frames);
-    out->lights = in->moving_count;
+    out->lights = baked_lights(in);
+    out->frames = malloc(((size_t)in->frames * out->lights + 1u) * sizeof *out->frames);
     if (!out->still || !out->frames) {
         bake_fail(why, VIT_FAILED, "indirect light: out of memory");
         return VIT_FAILED;
@@ -78,14 +93,14 @@ static vit_status keep(const baked_input *in, const states *s, const float *irra
     for (uint32_t r = 0; r < count; r++)
         memcpy(out->still[r].irradiance, irradiance + (size_t)r * columns, sizeof out->still[r].irradiance);
     for (uint32_t f = 0; f < in->frames; f++)
-        for (uint32_t l = 0; l < in->moving_count; l++)
-            out->frames[(size_t)f * in->moving_count + l] = s->knots[l].place[f];
+        for (uint32_t l = 0; l < out->lights; l++)
+            out->frames[(size_t)f * out->lights + l] = s->knots[l].place[f];
     const basis_input b = {.irradiance = irradiance,
                            .receivers = count,
                            .columns = columns,
                            .first = s->first,
                            .knots = s->counts,
-                           .lights = in->moving_count,
+                           .lights = out->lights,
                            .error = in->error,
                            .threads = in->threads};
     out->placed = count;
@@ -109,10 +124,89 @@ vit_status baked_foresee(const tracks *t, uint32_t frames, const uint32_t *movin
     return VIT_OK;
 }
 
+/* What every look at the light has. */
+static transport_input look_at(const baked_input *in, const states *s, const receiver *places, uint32_t count) {
+    const uint32_t wanted = CELLS_PER_RECEIVER * count;
+    const uint32_t of_light = wanted < CELLS_LEAST ? CELLS_LEAST : wanted < CELLS_MOST ? wanted : CELLS_MOST;
+    return (transport_input){.rays = in->rays,
+                             .geometry = in->geometry,
+                             .receivers = places,
+                             .receiver_count = count,
+                             .states = s->state,
+                             .state_count = s->count,
+                             .reflections = in->reflections,
+                             .cells = of_light,
+                             .receiver_rays = in->receiver_rays,
+                             .bounce_rays = of_light * BOUNCE_RAYS,
+                             .panes = in->panes,
+                             .threads = in->threads};
+}
+
+typedef struct finding {
+    const baked_input *in;
+    const states *states;
+} finding;
+
+static void first_step(void *user, double done) {
+    const finding *f = user;
+    f->in->progress(f->in->user, done * FIRST_LOOK);
+}
+
+static void second_step(void *user, double done) {
+    const finding *f = user;
+    f->in->progress(f->in->user, FIRST_LOOK + done * (1.0 - FIRST_LOOK));
+}
+
+/* Without lights there is none. */
+static vit_status find(const transport_input *t, float *irradiance, transport_report *report, vit_text *why) {
+    uint32_t lights = 0;
+    for (uint32_t i = 0; i < t->state_count; i++)
+        lights += t->states[i].count;
+    memset(irradiance, 0, (size_t)t->receiver_count * 3u * t->state_count * sizeof *irradiance);
+    return lights > 0 ? transport_find(t, irradiance, report, why) : VIT_OK;
+}
+
+/* receivers_input.look */
+static vit_status look_first(void *user, const receiver *places, uint32_t count, float *irradiance, vit_text *why) {
+    finding *f = user;
+    transport_report unused;
+    transport_input t = look_at(f->in, f->states, places, count);
+    t.cells = t.cells / FEWER > CELLS_LEAST ? t.cells / FEWER : CELLS_LEAST;
+    t.bounce_rays = t.cells * (BOUNCE_RAYS / FEWER);
+    t.receiver_rays = t.receiver_rays / FEWER > 0 ? t.receiver_rays / FEWER : 1;
+    t.progress = f->in->progress ? first_step : NULL;
+    t.user = f;
+    return find(&t, irradiance, &unused, why);
+}
+
+static vit_status look_again(finding *f, baked *out, vit_text *why) {
+    const receivers *r = &out->receivers;
+    states s = *f->states;
+    s.count = f->in->live ? 1 : s.count;
+    const uint32_t columns = 3 * s.count;
+    transport_input t = look_at(f->in, &s, r->receivers, r->count);
+    t.progress = f->in->progress ? second_step : NULL;
+    t.user = f;
+    float *irradiance = malloc(((size_t)r->count * columns + 1u) * sizeof *irradiance);
+    if (!irradiance)
+        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    vit_status status = find(&t, irradiance, &out->report, why);
+    if (status == VIT_OK) {
+        hang(r, irradiance, columns);
+        status = keep(f->in, &s, irradiance, out, why);
+    }
+    free(irradiance);
+    free(out->receivers.hanging); /* it has said all */
+    out->receivers.hanging = NULL;
+    out->receivers.hanging_count = 0;
+    return status;
+}
+
 vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
     *out = (baked){0};
     states s = {0};
-    float *irradiance = NULL;
+    finding f = {in, &s};
+    vit_status status = make_states(in, &s, why);
     const receivers_input place = {.rays = in->rays,
                                    .geometry = in->geometry,
                                    .tracks = in->tracks,
@@ -123,37 +217,14 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .within = in->within,
                                    .spacing = (float)in->spacing,
                                    .most = MOST_RECEIVERS,
-                                   .threads = in->threads};
-    vit_status status = receivers_place(&place, &out->receivers, why);
-    if (status == VIT_OK)
-        status = make_states(in, &s, why);
-    if (status == VIT_OK) {
-        irradiance = calloc((size_t)out->receivers.count * 3u * s.count + 1u, sizeof *irradiance);
-        const uint32_t wanted = CELLS_PER_RECEIVER * out->receivers.count, of_light = wanted < CELLS_LEAST  ? CELLS_LEAST
-                                                                                      : wanted > CELLS_MOST ? CELLS_MOST
-                                                                                                            : wanted;
-        const transport_input t = {.rays = in->rays,
-                                   .geometry = in->geometry,
-                                   .receivers = out->receivers.receivers,
-                                   .receiver_count = out->receivers.count,
-                                   .states = s.state,
-                                   .state_count = s.count,
-                                   .reflections = in->reflections,
-                                   .cells = of_light,
-                                   .receiver_rays = in->receiver_rays,
-                                   .bounce_rays = of_light * BOUNCE_RAYS,
-                                   .panes = in->panes,
                                    .threads = in->threads,
-                                   .progress = in->progress,
-                                   .user = in->user};
-        if (!irradiance)
-            status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
-        else if (in->still_count + in->moving_count > 0)
-            status = transport_find(&t, irradiance, &out->report, why);
-    }
-    if (status == VIT_OK && irradiance)
-        status = keep(in, &s, irradiance, out, why);
-    free(irradiance);
+                                   .look = look_first,
+                                   .user = &f,
+                                   .columns = 3 * s.count};
+    if (status == VIT_OK)
+        status = receivers_place(&place, &out->receivers, why);
+    if (status == VIT_OK)
+        status = look_again(&f, out, why);
     drop_states(&s, in->moving_count);
     if (status != VIT_OK)
         baked_free(out);

@@ -16,7 +16,8 @@ typedef struct baked_input {
     uint32_t still_count;
     const uint32_t *moving; /* lights of the tracks that are not */
     uint32_t moving_count;
-    double size;                               /* of the scene: radius of a sphere round it, m */
+    bool live;   /* nothing is baked of lights that move: they tell where light changes, and so where receivers are, alone */
+    double size; /* of the scene: radius of a sphere round it, m */
     uint32_t reflections;                      /* at most, or TRANSPORT_CONVERGED */
     double spacing, error;                     /* quality.receiver_spacing, quality.basis_error */
     uint32_t receiver_rays;                    /* quality.receiver_rays */

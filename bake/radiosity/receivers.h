@@ -1,13 +1,16 @@
 /* receivers.c: places on surfaces whose irradiance is baked, at the corners of cells as large as what the cameras see of them
- * allows. A sample takes its cell's three; cells that share a corner share its receiver, so that light is continuous. Where
- * something stands on a cell, as a wall on a floor that goes on beneath it, a plane parts it, and each side has receivers of
- * its own. */
+ * allows, or where light changes much within
+ * one, smaller. A sample takes its cell's three; cells that share a corner share its receiver, so that light is
+ * continuous. Where something stands on a cell, as a wall on a floor that goes on beneath it, a plane parts it, and each side
+ * has receivers of its own. */
 #ifndef VIT_RADIOSITY_RECEIVERS_H
 #define VIT_RADIOSITY_RECEIVERS_H
 
 #include "geometry/cells.h"
 #include "light/photon_rays.h"
 #include "motion/tracks.h"
+
+struct receiver;
 
 typedef struct receivers_input {
     const photon_rays *rays;
@@ -19,19 +22,33 @@ typedef struct receivers_input {
     bool within;                    /* samples are taken within pixels, not in their middles alone */
     uint32_t most;                  /* receivers wanted at most: the spacing grows until they are no more, or nearly so */
     unsigned threads;               /* 0: all cores; changes no byte */
+    /* A first look at the light of receivers, roughly: receivers x columns. Cells whose corners differ much are divided. NULL:
+     * none is. */
+    vit_status (*look)(void *user, const struct receiver *receivers, uint32_t count, float *irradiance, vit_text *why);
+    void *user;
+    uint32_t columns;
 } receivers_input;
 
 typedef struct receiver {
     uint32_t side;
     float b1, b2;
+    bool hangs; /* its light follows from that of two others: of hanging */
 } receiver;
+
+/* On an edge that a neighbour divides less often: the neighbour's light there, so that light is continuous. */
+typedef struct receiver_hanging {
+    uint32_t receiver, from[2];
+    float weight; /* of the second */
+} receiver_hanging;
 
 typedef struct receivers {
     vit_u32 *sides;             /* 2 a triangle: section SIDE */
     vit_receiver_cell *cells;   /* section RCEL */
     vit_receiver_split *splits; /* section RSPL */
     receiver *receivers;        /* ordered so that neighbours in space are near each other in the list */
-    uint32_t side_count, cell_count, split_count, count;
+    receiver_hanging *hanging;
+    uint32_t side_count, cell_count, split_count, count, hanging_count;
+    uint32_t divided;    /* cells, as their light changes much */
     uint32_t seen_sides; /* of triangles, by the path's cameras */
     uint32_t lit_sides;  /* that light can reach, of matt materials */
 } receivers;

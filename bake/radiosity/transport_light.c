@@ -24,6 +24,12 @@ typedef struct lighting {
     bool again;       /* these are taken */
 } lighting;
 
+/* How near an area light is if it is so near that places on it are a poor choice, as its squared distance varies much: rays
+ * that a cell sends out meet it there. m */
+static float near_of(const transport *t, const photons_light *l) {
+    return l->area && !t->in->panes ? sqrtf((float)(l->area->area / (4.0 * 3.14159265358979))) : 0.0f;
+}
+
 typedef struct spot {
     vec3 position, face, normal, albedo;
 } spot;
@@ -47,6 +53,8 @@ static spot spot_at(const transport *t, const transport_place *p, float edge) {
 /* Radiosity by one look at a light. */
 static vec3 look(const transport *t, const photons_light *l, const spot *at, double x, double y, uint64_t *rays) {
     const arrival a = photon_arrival(t->in->rays, l, at->position, x, y);
+    if (a.distance < near_of(t, l))
+        return (vec3){0.0f, 0.0f, 0.0f};
     const float cosine = vec3_dot(at->normal, a.direction);
     float mirror;
     if (!(cosine > 0.0f) || !(vec3_dot(at->face, a.direction) > 0.0f) ||
@@ -55,6 +63,36 @@ static vec3 look(const transport *t, const photons_light *l, const spot *at, dou
     *rays += 1;
     const vec3 part = panes_pass(t->in->rays, t->in->panes, at->position, a.direction, a.distance, &mirror);
     return vec3_times(vec3_times(vec3_scale(a.irradiance, cosine), part), at->albedo);
+}
+
+static bool shines(const area_lights *e, uint32_t side) {
+    uint32_t low = 0, high = e->count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (e->side[middle] < side)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < e->count && e->side[low] == side;
+}
+
+/* Radiosity by one ray to what shines near by. */
+static vec3 look_near(const transport *t, const photons_light *l, const spot *at, float x, float y, uint64_t *rays) {
+    const photon_scene *s = t->in->rays->s;
+    const vec3 d = vec3_cosine(at->normal, x, y), none = {0.0f, 0.0f, 0.0f};
+    float distance;
+    if (!(vec3_dot(at->face, d) > 0.0f))
+        return none;
+    *rays += 1;
+    const uint32_t triangle = photon_rays_nearest(t->in->rays, at->position, d, &distance);
+    if (triangle == VIT_NONE || !(distance < near_of(t, l)))
+        return none;
+    const uint32_t side = 2 * triangle + (vec3_dot(d, side_face(t->in->geometry, 2 * triangle)) > 0.0f);
+    if (!shines(l->area, side))
+        return none;
+    const float *own = s->materials[s->attributes[triangle].material & VIT_MATERIAL_INDEX].emission;
+    return vec3_scale(vec3_times(vec3_load(own), at->albedo), 3.14159265f);
 }
 
 static void add(float *to, vec3 v, float scale) {
@@ -79,7 +117,9 @@ static double light_place(const transport *t, const spot *at, uint32_t seed, uin
             for (uint32_t k = 0; k < looks; k++) {
                 float v;
                 const float u = numbers(pcg(seed ^ pcg(i)), first + k, &v);
-                const vec3 e = look(t, light, at, (double)u, (double)v, rays);
+                vec3 e = look(t, light, at, (double)u, (double)v, rays);
+                if (near_of(t, light) > 0.0f)
+                    e = vec3_along(e, look_near(t, light, at, v, u, rays), 1.0f);
                 add(to + 3 * s, e, scale / (float)looks);
                 sum += ((double)e.x + (double)e.y + (double)e.z) / looks;
             }
@@ -149,12 +189,18 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
         to[c] /= (float)count;
 }
 
+/* Of a block's two halves, each every second of its cells, the one that this cell is in. */
+static uint32_t half_of(const transport *t, uint32_t n) {
+    const uint32_t cell = t->cell[n] / 2;
+    return 2u * (cell / BLOCK) + (cell & 1u);
+}
+
 /* How many more samples each cell gets: half of them in proportion to what receivers get from it, half to what its deviation
- * does to them. The deviation is that of the cells round about together: one that followed a cell's own first samples would
- * leave those alone that have missed the light, and so lose light. False: out of memory. */
+ * does to them. The deviation is that of other cells round about, every second one: if a cell's own first samples had a say, it
+ * would be left alone where they have missed the light, and so light would be lost. False: out of memory. */
 static bool share_out(lighting *l) {
     const transport *t = l->t;
-    const uint32_t blocks = t->cells.count / BLOCK + 1u;
+    const uint32_t blocks = 2u * (t->cells.count / BLOCK + 1u);
     double looks = 0.0, all[2] = {0.0, 0.0}, *variance = calloc(blocks, sizeof *variance);
     uint32_t *count = calloc(blocks, sizeof *count);
     for (uint32_t s = 0; s < t->in->state_count; s++)
@@ -163,19 +209,19 @@ static bool share_out(lighting *l) {
         for (size_t k = 0; k < t->gathers.first[t->gathers.count]; k++)
             l->weight[t->gathers.to[k]] += t->gathers.factor[k];
         for (uint32_t i = 0; i < t->count; i++) {
-            variance[t->cell[i] / 2 / BLOCK] += l->variance[i];
-            count[t->cell[i] / 2 / BLOCK]++;
+            variance[half_of(t, i)] += l->variance[i];
+            count[half_of(t, i)]++;
         }
         for (uint32_t b = 0; b < blocks; b++)
             variance[b] = count[b] ? sqrt(variance[b] / count[b]) : 0.0;
         for (uint32_t i = 0; i < t->count; i++) {
             all[0] += (double)l->weight[i];
-            all[1] += (double)l->weight[i] * variance[t->cell[i] / 2 / BLOCK];
+            all[1] += (double)l->weight[i] * variance[half_of(t, i) ^ 1u];
         }
         for (uint32_t i = 0; i < t->count && all[1] > 0.0; i++) {
             const double w = (double)l->weight[i];
             const double part =
-                (w / all[0] + w * variance[t->cell[i] / 2 / BLOCK] / all[1]) * 0.5 * MORE_LOOKS * t->in->cells / looks;
+                (w / all[0] + w * variance[half_of(t, i) ^ 1u] / all[1]) * 0.5 * MORE_LOOKS * t->in->cells / looks;
             l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
         }
     }

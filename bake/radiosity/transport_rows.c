@@ -172,6 +172,10 @@ static void shoot_row(void *user, uint32_t item) {
     const uint32_t row = s->first + item, seed = pcg(row ^ (s->receivers ? 0x2545f491u : 0x9e3779b9u));
     const uint32_t rays = s->receivers ? s->rays : s->row_rays[row];
     found *hits = s->hits + (size_t)item * s->rays;
+    if (s->receivers && in->receivers[row].hangs) { /* its light is not asked for */
+        hits[0].part = VIT_NONE;
+        return;
+    }
     for (uint32_t i = 0; i < rays; i++) {
         transport_place from;
         vec3 about;
@@ -262,11 +266,14 @@ static void offer(transport *t, uint32_t number, const transport_place *p) {
         kept[worst] = *p;
 }
 
-/* Notes a row's hits, which are sorted. known: of cells that have numbers only, and their places stay. */
+/* Notes a row's hits, which are sorted. known: of cells that have numbers only, whose places stay; they stand for the others,
+ * too, or light would be lost. */
 static bool note_row(transport *t, transport_rows *rows, const found *hits, uint32_t rays, bool known) {
     if (!rows->first || !transport_make_room(rows, rows->count + 1u, rows->first[rows->count] + rays))
         return false;
-    size_t at = rows->first[rows->count];
+    const size_t begin = rows->first[rows->count];
+    size_t at = begin;
+    double all = 0.0, noted = 0.0;
     for (uint32_t i = 0; i < rays && hits[i].part != VIT_NONE;) {
         const uint32_t part = hits[i].part, number = known ? t->number[part] : number_of(t, part);
         double sum = 0.0;
@@ -277,11 +284,15 @@ static bool note_row(transport *t, transport_rows *rows, const found *hits, uint
             if (!known)
                 offer(t, number, &hits[i].place);
         }
+        all += sum;
         if (number == VIT_NONE)
             continue;
+        noted += sum;
         rows->to[at] = number;
         rows->factor[at++] = (float)(sum / rays);
     }
+    for (size_t k = begin; k < at && noted < all; k++)
+        rows->factor[k] *= (float)(all / noted);
     rows->first[++rows->count] = at;
     return true;
 }

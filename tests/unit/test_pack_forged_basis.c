@@ -48,7 +48,15 @@
     X(RCEL, receiver_beyond_the_last, "record 26: receiver 512 of 512", im->receiver_cells[26].receiver[2] = 512)              \
     X(RCEL, huge_receiver, "record 0: receiver 4294967295 of 512", im->receiver_cells[0].receiver[0] = 0xffffffff)             \
     X(RCEL, split_beyond_the_last, "record 3: split 2 of 2", im->receiver_cells[3].split = 2)                                  \
-    X(RCEL, huge_split, "record 3: split 4294967294 of 2", im->receiver_cells[3].split = VIT_NONE - 1)                         \
+    X(RCEL, huge_split, "record 3: split 2147483647 of 2", im->receiver_cells[3].split = VIT_RECEIVER_DIVIDED - 1)             \
+    X(RCEL, no_parts, "record 3: 0 parts", divide(im, 3, 4, 0))                                                                \
+    X(RCEL, many_parts, "record 3: 17 parts", divide(im, 3, 4, 17))                                                            \
+    X(RCEL, most_parts, "record 3: 2147483646 parts", divide(im, 3, 4, VIT_RECEIVER_DIVIDED - 2))                              \
+    X(RCEL, part_beyond_the_last, "record 3: its cells must be behind record 3 and before 27", divide(im, 3, 12, 4))           \
+    X(RCEL, parts_that_wrap, "record 3: its cells must be", divide(im, 3, 0xfffffff0, 4))                                      \
+    X(RCEL, a_part_of_itself, "record 3: its cells must be behind record 3", divide(im, 3, 3, 2))                              \
+    X(RCEL, parts_that_are_divided, "record 3: its cells must be behind record 5", divide(im, 3, 4, 2), divide(im, 5, 9, 2))   \
+    X(RCEL, padding_of_a_divided_cell, "record 3: padding", divide(im, 3, 4, 2), im->receiver_cells[3].receiver[2] = 1)        \
     X(RSPL, receiver_beyond_the_last, "record 1: receiver 512 of 512", im->splits[1].receiver[1] = 512)                        \
     X(RSPL, normal_too_short, "record 0: its normal", im->splits[0].normal[1] = 0.5f)                                          \
     X(RSPL, normal_of_nan, "record 1: its normal", im->splits[1].normal[0] = NAN)                                              \
@@ -90,6 +98,8 @@
 /* What is just inside the limits must pass: X(name, change made to `im`). */
 #define LIMITS(X)                                                                                                              \
     X(no_split_used, im->receiver_cells[0].split = im->receiver_cells[26].split = VIT_NONE)                                    \
+    X(a_cell_divided_up_to_the_last, divide(im, 3, 11, 4))                                                                     \
+    X(two_divided_cells, divide(im, 3, 5, 2), divide(im, 4, 5, 4))                                                             \
     X(parts_up_to_the_last_cell, im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 2)                                                \
     X(three_times_the_last_receiver,                                                                                           \
       im->receiver_cells[0].receiver[0] = im->receiver_cells[0].receiver[1] = im->receiver_cells[0].receiver[2] = 511)         \
@@ -106,6 +116,10 @@
     X(the_least_numbers, memset(im->words, 0x80, FIXTURE_WORDS * sizeof *im->words))
 
 #define FAULTS(X) META_FAULTS(X) RECORD_FAULTS(X)
+
+static void divide(image *im, uint32_t cell, uint32_t first, uint32_t parts) {
+    im->receiver_cells[cell] = (vit_receiver_cell){.receiver = {first, 0, 0}, .split = VIT_RECEIVER_DIVIDED | parts};
+}
 
 static void no_ranks(image *im) {
     for (int i = 0; i < FIXTURE_GROUPS * FIXTURE_LIGHTS; i++)

@@ -185,16 +185,22 @@ static void both_halves_of_a_word_keep_their_signs(void **state) {
 
 /* ---- between receivers ---- */
 
-enum { MOST_PARTS = 9, MOST_CELLS = MOST_PARTS * MOST_PARTS, SAMPLES = 4096 };
+enum {
+    MOST_PARTS = 9,
+    MOST_CELLS = MOST_PARTS * MOST_PARTS,
+    DIVIDED = 3, /* parts of a side whose cells are divided, at most */
+    MOST_RECORDS = 2 * MOST_CELLS + DIVIDED * DIVIDED * (int)(VIT_RECEIVER_PARTS * VIT_RECEIVER_PARTS),
+    SAMPLES = 4096
+};
 
 /* One triangle whose front and back have `parts` x `parts` cells, with three receivers a cell and three more behind its split.
  */
 typedef struct cell_lab {
     vit_triangle triangle;
     vit_u32 sides[2];
-    vit_receiver_cell cells[2 * MOST_CELLS];
+    vit_receiver_cell cells[MOST_RECORDS];
     vit_receiver_split splits[2 * MOST_CELLS];
-    float light[2 * 2 * MOST_CELLS * 3 * 4];
+    float light[2 * MOST_RECORDS * 3 * 4];
     float places[5 * SAMPLES], irradiance[3 * SAMPLES]; /* planes: position, b1, b2 */
     uint32_t hit[SAMPLES];
     int32_t back[SAMPLES];
@@ -259,6 +265,32 @@ static cell_lab *make_cells(int n, const float v0[3], const float v1[3], const f
     return l;
 }
 
+/* Divides each cell of the back, whose parts get the light behind a split. */
+static void divide_back(cell_lab *l, int n, int parts) {
+    vit_u32 record = 2u * (vit_u32)(n * n), cell = (vit_u32)(n * n), first = 6 * record;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n - i; j++)
+            for (int upper = 0; upper < (i + j < n - 1 ? 2 : 1); upper++, cell++) {
+                double of[3][2];
+                corners_of(n, i, j, upper, of);
+                l->cells[cell] =
+                    (vit_receiver_cell){.receiver = {record, 0, 0}, .split = VIT_RECEIVER_DIVIDED | (vit_u32)parts};
+                for (int x = 0; x < parts; x++)
+                    for (int y = 0; y < parts - x; y++)
+                        for (int up = 0; up < (x + y < parts - 1 ? 2 : 1); up++, record++, first += 3) {
+                            double within[3][2], corner[3][2];
+                            corners_of(parts, x, y, up, within);
+                            for (int c = 0; c < 3; c++)
+                                for (int k = 0; k < 2; k++)
+                                    corner[c][k] =
+                                        of[0][k] + within[c][0] * (of[1][k] - of[0][k]) + within[c][1] * (of[2][k] - of[0][k]);
+                            put_receivers(l, first, 1, 1, corner, l->cells[record].receiver);
+                            l->cells[record].split = VIT_NONE;
+                        }
+            }
+    assert_true(record <= MOST_RECORDS);
+}
+
 /* Place i at these weights, on a side. */
 static void put_place(cell_lab *l, uint32_t i, double b1, double b2, int side) {
     const vit_triangle *t = &l->triangle;
@@ -314,6 +346,23 @@ static void a_linear_function_comes_back_in_every_cell_on_both_sides(void **stat
         print_message("%d parts: worst %.3g\n", n, worst);
         assert_true(worst < 2e-5);
     }
+}
+
+static void a_divided_cell_has_the_light_of_its_parts(void **state) {
+    (void)state;
+    static const int parts[] = {1, 2, 5, VIT_RECEIVER_PARTS};
+    for (int n = 1; n <= DIVIDED; n++)
+        for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
+            cell_lab *l = make_cells(n, corner0, corner1, corner2, NULL, 0);
+            divide_back(l, n, parts[p]);
+            put_places(l, n);
+            receive(l);
+            for (uint32_t i = 0; i < SAMPLES; i++)
+                for (uint32_t k = 0; k < 3; k++) {
+                    const double e = field_of(l, i, -l->back[i], (int)k);
+                    assert_true(fabs((double)l->irradiance[k * SAMPLES + i] - e) < 1e-4);
+                }
+        }
 }
 
 static void samples_without_a_hit_get_nothing(void **state) {
@@ -444,6 +493,7 @@ int main(void) {
         cmocka_unit_test(without_moving_light_relight_gives_what_is_still),
         cmocka_unit_test(both_halves_of_a_word_keep_their_signs),
         cmocka_unit_test(a_linear_function_comes_back_in_every_cell_on_both_sides),
+        cmocka_unit_test(a_divided_cell_has_the_light_of_its_parts),
         cmocka_unit_test(samples_without_a_hit_get_nothing),
         cmocka_unit_test(a_parted_cell_has_other_light_behind_its_plane),
         cmocka_unit_test(what_lies_on_the_plane_is_behind_it),

@@ -49,7 +49,7 @@ static receiver *spread_receivers(const lab *l, uint32_t *count) {
             const uint32_t row = (uint32_t)sqrt((double)i), k = i - row * row;
             const float b1 = ((float)(k / 2) + (k % 2 ? 2.0f : 1.0f) / 3.0f) / (float)EVENLY;
             const float down = ((float)row + (k % 2 ? 1.0f : 2.0f) / 3.0f) / (float)EVENLY;
-            all[(*count)++] = (receiver){s, b1, down - b1};
+            all[(*count)++] = (receiver){.side = s, .b1 = b1, .b2 = down - b1};
         }
     return all;
 }

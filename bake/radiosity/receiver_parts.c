@@ -1,0 +1,143 @@
+/* Cells within which light changes much are divided once more: by how much it differs between their corners, at a first look,
+ * against what there is. Where a neighbour is divided less often, what lies on the common edge takes the neighbour's light, as
+ * hanging nodes of finite elements do. */
+#include "radiosity/receivers_parts.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define STEP 0.4f      /* of the light at the corners of a part, over its mean */
+#define DIM 0.02f      /* of the mean of all: less counts as so much */
+#define MORE_STEP 1.3f /* where there would be too many */
+#define MORE 1u        /* receivers of parts, at most so many times those of cells, */
+#define MORE_LEAST 16384u
+
+/* How much the light of a cell's corners differs, over its mean; all columns together. */
+static float contrast_of(const placing *p, uint32_t cell, const float *irradiance, double mean) {
+    const uint32_t columns = p->in->columns;
+    const vit_u32 *r = p->out->cells[cell].receiver;
+    double differ = 0.0, sum = 0.0;
+    for (uint32_t c = 0; c < columns; c++) {
+        const float a = irradiance[(size_t)r[0] * columns + c], b = irradiance[(size_t)r[1] * columns + c],
+                    d = irradiance[(size_t)r[2] * columns + c];
+        differ += (double)(float_max(a, float_max(b, d)) - float_min(a, float_min(b, d)));
+        sum += ((double)a + (double)b + (double)d) / 3.0;
+    }
+    return sum + DIM * mean > 0.0 ? (float)(differ / (sum + DIM * mean)) : 0.0f;
+}
+
+static uint32_t parts_for(float contrast, float step) {
+    uint32_t parts = 1;
+    while (parts < VIT_RECEIVER_PARTS && contrast > step * (float)parts)
+        parts *= 2;
+    return parts;
+}
+
+/* The step by which they are not too many. */
+static float find_step(const placing *p, const float *contrast) {
+    const uint32_t most = p->out->count * MORE > MORE_LEAST ? p->out->count * MORE : MORE_LEAST;
+    for (float step = STEP;; step *= MORE_STEP) {
+        uint64_t nodes = 0;
+        for (uint32_t i = 0; i < p->cells.count; i++) {
+            const uint32_t n = parts_for(contrast[i], step);
+            nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
+        }
+        if (nodes <= most)
+            return step;
+    }
+}
+
+bool receivers_find_parts(placing *p, const float *irradiance) {
+    const uint32_t count = p->cells.count;
+    float *contrast = calloc(count + 1u, sizeof *contrast);
+    double mean = 0.0;
+    p->parts = malloc((count + 1u) * sizeof *p->parts);
+    p->first_part = malloc((count + 1u) * sizeof *p->first_part);
+    p->part_count = 0;
+    if (!contrast || !p->parts || !p->first_part) {
+        free(contrast);
+        return false;
+    }
+    for (size_t i = 0; irradiance && i < (size_t)p->out->count * p->in->columns; i++)
+        mean += (double)irradiance[i] / p->out->count;
+    for (uint32_t i = 0; irradiance && i < count; i++)
+        if (p->met[p->cells.side_of[i]] && p->looked_at[i])
+            contrast[i] = contrast_of(p, i, irradiance, mean);
+    const float step = find_step(p, contrast);
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t parts = parts_for(contrast[i], step);
+        p->parts[i] = parts;
+        p->first_part[i] = p->part_count;
+        p->part_count += parts > 1 ? parts * parts : 0u;
+    }
+    free(contrast);
+    p->whole = malloc((p->part_count + 1u) * sizeof *p->whole);
+    for (uint32_t i = 0; i < count && p->whole; i++)
+        for (uint32_t k = 0; k < p->parts[i] * p->parts[i] && p->parts[i] > 1; k++)
+            p->whole[p->first_part[i] + k] = i;
+    return p->whole != NULL;
+}
+
+/* Slot of an edge, or the free one where it belongs. */
+static uint32_t edge_slot(const placing *p, uint32_t a, uint32_t b) {
+    const uint64_t key = a < b ? (uint64_t)b << 32 | a : (uint64_t)a << 32 | b;
+    uint32_t at = pcg((uint32_t)key ^ pcg((uint32_t)(key >> 32))) & (p->edge_slots - 1);
+    while (p->edge_parts[at] && p->edges[at] != key)
+        at = (at + 1) & (p->edge_slots - 1);
+    p->edges[at] = key;
+    return at;
+}
+
+bool receivers_find_edges(placing *p) {
+    p->edge_slots = 1024;
+    while (p->edge_slots < 6u * p->cells.count && p->edge_slots < 1u << 30)
+        p->edge_slots *= 2;
+    p->edges = malloc(p->edge_slots * sizeof *p->edges);
+    p->edge_parts = calloc(p->edge_slots, sizeof *p->edge_parts);
+    if (!p->edges || !p->edge_parts)
+        return false;
+    for (uint32_t i = 0; i < p->cells.count; i++) {
+        const vit_u32 *r = p->out->cells[i].receiver;
+        for (int k = 0; k < 3 && p->spacing[p->cells.side_of[i]] > 0.0f; k++) {
+            const uint32_t at = edge_slot(p, r[k], r[(k + 1) % 3]);
+            if (p->edge_parts[at] == 0 || p->edge_parts[at] > p->parts[i])
+                p->edge_parts[at] = (uint8_t)p->parts[i];
+        }
+    }
+    return true;
+}
+
+static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight) {
+    receivers *o = p->out;
+    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].hangs)
+        return true;
+    if (o->hanging_count == p->hanging_room) {
+        const uint32_t room = p->hanging_room ? 2 * p->hanging_room : 1024;
+        receiver_hanging *more = realloc(o->hanging, room * sizeof *more);
+        if (!more)
+            return false;
+        o->hanging = more;
+        p->hanging_room = room;
+    }
+    o->receivers[on].hangs = true;
+    o->hanging[o->hanging_count++] = (receiver_hanging){on, {a, b}, weight};
+    return true;
+}
+
+bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES]) {
+    static const uint32_t corner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+    const uint32_t parts = p->parts[cell];
+    const vit_u32 *r = p->out->cells[cell].receiver;
+    bool fine = true;
+    for (int e = 0; e < 3; e++) {
+        const uint32_t *from = corner[e], *to = corner[(e + 1) % 3];
+        const uint32_t fewest = p->edge_parts[edge_slot(p, r[e], r[(e + 1) % 3])], step = fewest ? parts / fewest : 1;
+        uint32_t on[RECEIVER_NODES];
+        for (uint32_t k = 0; k <= parts; k++)
+            on[k] = node[from[0] * (parts - k) + to[0] * k][from[1] * (parts - k) + to[1] * k];
+        for (uint32_t k = 1; k < parts && fine; k++) {
+            const uint32_t low = k / step * step;
+            fine = k == low || hang(p, on[k], on[low], on[low + step], (float)(k - low) / (float)step);
+        }
+    }
+    return fine;
+}

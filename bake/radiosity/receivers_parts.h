@@ -1,0 +1,56 @@
+/* What the files of receivers.h share. Private to bake/radiosity. */
+#ifndef VIT_RADIOSITY_RECEIVERS_PARTS_H
+#define VIT_RADIOSITY_RECEIVERS_PARTS_H
+
+#include "radiosity/receivers.h"
+#include "radiosity/separation.h"
+
+/* Where a ray of a camera ended. */
+typedef struct receiver_sight {
+    uint32_t side;
+    float b1, b2;
+    float wide; /* so far off another ray may be, m */
+} receiver_sight;
+
+typedef struct placing {
+    const receivers_input *in;
+    receivers *out;
+    float *spacing; /* a side, m; 0: it is dark, or no light stays on it */
+    bool *seen;     /* a side: by the cameras' rays, or beside one that they met */
+    bool *met;      /* a side: by the cameras' rays */
+    float *lift;    /* a side: how far above it places look at each other, m */
+    float (*at)[2]; /* a seen side: where the nearest of them met it, barycentric weights */
+    float unseen;   /* spacing of the others, m */
+    uint32_t step;  /* pixels between the cameras' rays, each way */
+    receiver_sight *sights;
+    size_t sight_count, sight_room;
+    cells cells;
+    bool *looked_at; /* a cell: by the cameras, or none of its side's cells is */
+    /* receiver_parts.c: cells that are divided once more. */
+    uint32_t *parts;      /* a cell: along each edge, 1 where it is not */
+    uint32_t *first_part; /* a cell: its first part, among all cells' */
+    uint32_t *whole;      /* a part: the cell that it is of */
+    uint32_t part_count;
+    uint64_t *edges;     /* a hash table of cells' edges: their two receivers, the larger in the high half */
+    uint8_t *edge_parts; /* the fewest that a cell there is divided into; 0: no such edge */
+    uint32_t edge_slots; /* a power of two */
+    uint32_t room, split_room, hanging_room;
+    uint64_t *keys; /* a hash table of welded corners */
+    uint32_t *found;
+    uint32_t slots; /* of the table, a power of two */
+    bool failed;
+} placing;
+
+/* receiver_spacing.c: `spacing`, `seen`, `met`, `lift`, `at`, `sights`. False: out of memory. */
+bool receivers_find_spacing(placing *p);
+/* `looked_at`, once there are cells. */
+bool receivers_find_looked_at(placing *p);
+/* receiver_parts.c: `parts`, `first_part`, `whole`. irradiance: of the cells' receivers, or NULL. */
+bool receivers_find_parts(placing *p, const float *irradiance);
+/* `edges`, once cells have receivers. */
+bool receivers_find_edges(placing *p);
+#define RECEIVER_NODES (VIT_RECEIVER_PARTS + 1u)
+/* `hanging` of a cell's parts, whose corner i, j has receiver node[i][j], or VIT_NONE. */
+bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES]);
+
+#endif
