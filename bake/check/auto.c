@@ -135,8 +135,6 @@ static vit_status pack_guided(search *s, pipeline_packed *out, vit_text *why) {
 /* The reference, if it is not there yet, and what follows from it and from the plainest pack. */
 static vit_status begin(search *s, vit_text *why) {
     pipeline_packed packed;
-    if (s->base.indirect == INDIRECT_BASIS && !kept(s, SETTING_BIT(bounces)))
-        s->base.bounces = PLAN_ALL_BOUNCES;
     vit_status status = at_receivers(&s->base) ? pack(s, &s->base, &packed, why) : pack_guided(s, &packed, why);
     if (status != VIT_OK)
         return status;

@@ -84,7 +84,7 @@ pipeline_choice pipeline_default(const pipeline *p) {
     return (pipeline_choice){.quality = p->scene.quality, .width = p->scene.width, .height = p->scene.height};
 }
 
-vit_status pipeline_settle_indirect(pipeline *p, vit_text *why) {
+static vit_status settle_maker(pipeline *p, vit_text *why) {
     const pipeline_choice choice = pipeline_default(p);
     pipeline_packed packed = {0};
     bake b = {.p = p, .choice = &choice, .scene = p->scene, .out = &packed};
@@ -100,6 +100,14 @@ vit_status pipeline_settle_indirect(pipeline *p, vit_text *why) {
         memcpy(p->indirect_why, packed.plan.indirect_why, sizeof p->indirect_why);
     }
     pipeline_packed_free(&packed);
+    return status;
+}
+
+vit_status pipeline_settle_indirect(pipeline *p, vit_text *why) {
+    const vit_status status = settle_maker(p, why);
+    scene_quality *q = &p->scene.quality;
+    if (q->indirect != INDIRECT_AUTO && q->indirect != INDIRECT_PHOTONS && !(p->scene.quality_kept & SETTING_BIT(bounces)))
+        q->bounces = PLAN_ALL_BOUNCES;
     return status;
 }
 

@@ -92,7 +92,8 @@ vit_status pipeline_read(const char *path, scene *out, vit_text *why);
 vit_status pipeline_load(pipeline *p, vit_text *why);
 void pipeline_free(pipeline *p);
 
-/* Puts who makes indirect light instead of "auto" into scene.quality, where there is any (indirect_maker.h), and says why. */
+/* Puts who makes indirect light instead of "auto" into scene.quality, where there is any (indirect_maker.h), and says why.
+ * Where it is not photons, further reflections cost a frame nothing: all count unless the scene states `bounces`. */
 vit_status pipeline_settle_indirect(pipeline *p, vit_text *why);
 
 /* What the scene itself says. */
