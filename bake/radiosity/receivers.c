@@ -10,6 +10,7 @@
 #define NORMAL_STEPS 12  /* of the octahedral square each way, for like normals */
 #define PULLED_IN 0.04f  /* of the way to the cell's middle: corners lie on edges, where others' surfaces begin */
 #define EVERYWHERE ((1u << SEPARATION_PLACES) - 1u)
+#define HARDLY_SEEN 3.0f /* spacings: corners of cells that no ray of a camera met share receivers as near as that */
 #define GROWTH 1.1f
 #define ROUNDS 4       /* of growth, at most */
 #define UNSEEN_PART 8u /* of the receivers wanted at most, for sides that no ray met */
@@ -273,12 +274,12 @@ static bool take(placing *p, const cornered *c, const separation *apart, bool is
 
 static bool take_cell(placing *p, const parting *s, uint32_t cell) {
     const uint32_t side = p->cells.side_of[cell];
-    const bool seen = p->seen[side] && p->looked_at[cell];
+    const float weld = p->looked_at[cell] ? weld_of(p, side) : float_min(p->spacing[side] * HARDLY_SEEN, p->unseen);
     const cornered c = {.side = side,
                         .at = cells_corners(&p->cells, cell),
-                        .weld = seen ? weld_of(p, side) : p->unseen,
+                        .weld = p->seen[side] ? weld : p->unseen,
                         .lift = lift_of(p, side, 1),
-                        .seen = seen,
+                        .seen = p->seen[side],
                         .only = p->cells.sides[side] >> VIT_SIDE_PARTS_SHIFT == 1};
     return take(p, &c, s->found + cell, s->is[cell], p->out->cells + cell);
 }
