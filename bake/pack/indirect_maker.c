@@ -116,8 +116,8 @@ vit_status indirect_maker_choose(const plan_input *in, plan *p, vit_text *why) {
     static const char by_mirrors[] = "%.3g %% of the light on matt surfaces comes by mirrors and glass";
     const scene_quality *q = &in->scene->quality;
     char caustics[96] = "";
-    baked_foreseen f;
-    double part;
+    baked_foreseen f = {0};
+    double part = 0;
     p->indirect = q->indirect;
     if (q->indirect != INDIRECT_AUTO || all_paths(in, p) == 0) {
         p->indirect = q->indirect == INDIRECT_AUTO ? INDIRECT_PHOTONS : q->indirect;

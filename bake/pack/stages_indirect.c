@@ -41,15 +41,16 @@ static photon_scene scene_of_pack(const bake *b) {
 }
 
 /* As baked_find(), with rays of its own. */
-static vit_status find(const bake *b, const photon_scene *s, baked_input *in, vit_text *why) {
+static vit_status find(const bake *b, const photon_scene *s, const baked_input *input, vit_text *why) {
     const pipeline *p = b->p;
     photon_rays rays;
     if (!photon_rays_open(s, p->threads, &rays))
         return bake_fail(why, VIT_FAILED, "Embree fails");
     progress_stage(p->progress, "indirect light");
-    in->rays = &rays;
+    baked_input in = *input;
+    in.rays = &rays;
     const double began = progress_now();
-    const vit_status status = baked_find(in, &b->out->baked, why);
+    const vit_status status = baked_find(&in, &b->out->baked, why);
     b->out->baked.seconds = progress_now() - began;
     photon_rays_close(&rays);
     return status;

@@ -27,8 +27,8 @@ static float apart2(const pointing *w, const patch_point *a, const patch_point *
 static void choose(void *user, uint32_t patch) {
     const pointing *w = user;
     patch_point met[PATCHES_POINTS];
-    float near[PATCHES_POINTS];
-    uint32_t all = w->p->point_count[patch], nearest[PATCHES_POINTS];
+    float near[PATCHES_POINTS] = {0};
+    uint32_t all = w->p->point_count[patch], nearest[PATCHES_POINTS] = {0};
     for (uint32_t i = 0; i < all; i++)
         met[i] = w->p->points[(size_t)patch * PATCHES_POINTS + i];
     for (; w->p->point_count[patch] == 0 && all < w->most; all++) {

@@ -113,8 +113,10 @@ static bool make_room(const looking *w, size_t *room, live *out) {
         return true;
     *room = wanted + wanted / 2;
     vit_u32 *words = realloc(out->words, *room * sizeof *words);
-    out->words = words ? words : out->words;
-    return words != NULL;
+    if (!words)
+        return false;
+    out->words = words;
+    return true;
 }
 
 vit_status live_rows(const live_input *in, const patch_set *p, live *out, vit_text *why) {

@@ -37,6 +37,7 @@ typedef struct targets {
     float *share;  /* a number: how much of the rays it gets, before they are divided by all; 0: none */
     uint32_t *aim; /* numbers that get some */
     double *sum;   /* shares up to the end of each */
+    double all;    /* of them */
     uint32_t count;
 } targets;
 
@@ -57,7 +58,7 @@ static bool is_aimed(const targets *g, vec3 from, vec3 normal, uint32_t number) 
         return false;
     const double by_chance =
         (double)t->in->receiver_rays * (double)here * (double)there * (double)area / (3.14159265358979 * (double)d2);
-    return g->a->rays * (double)g->share[number] > by_chance * g->sum[g->count - 1];
+    return g->a->rays * (double)g->share[number] > by_chance * g->all;
 }
 
 static uint32_t chosen(const targets *g, double at) {
@@ -95,7 +96,7 @@ static float aimed(const targets *g, const receiver *r, vec3 from, vec3 normal, 
         !separation_sees(t->in->rays, vec3_along(from, own, offset), vec3_along(to, face, offset)))
         return 0.0f;
     const double part = (double)here * (double)there * (double)area_of(t, number) / (3.14159265358979 * (double)d2);
-    return (float)(part * g->sum[g->count - 1] / ((double)g->share[number] * g->a->rays));
+    return (float)(part * g->all / ((double)g->share[number] * g->a->rays));
 }
 
 static uint32_t aim_row(const targets *g, uint32_t row, uint32_t *to, float *factor) {
@@ -114,7 +115,7 @@ static uint32_t aim_row(const targets *g, uint32_t row, uint32_t *to, float *fac
     }
     for (uint32_t i = 0; i < a->rays && g->count > 0 && !r->hangs; i++) {
         vec3 at;
-        const double u = ((double)i + (double)unit_float(pcg(seed + 3u * i))) / a->rays * g->sum[g->count - 1];
+        const double u = ((double)i + (double)unit_float(pcg(seed + 3u * i))) / a->rays * g->all;
         const uint32_t number = g->aim[chosen(g, u)];
         if (!is_aimed(g, from, normal, number) ||
             !place_on(t, number, unit_float(pcg(seed + 3u * i + 1u)), unit_float(pcg(seed + 3u * i + 2u)), &at))
@@ -162,6 +163,7 @@ static void choose(targets *g, uint32_t first, uint32_t end, uint32_t half) {
             g->sum[i] = all;
         }
     }
+    g->all = all;
 }
 
 static void aim_group(void *user, uint32_t item) {
