@@ -28,7 +28,7 @@ static double moved(const vit_light *a, const vit_light *b, double size) {
 
 vit_status basis_knots_find(const tracks *t, uint32_t frames, uint32_t light, double size, basis_knots *out, vit_text *why) {
     *out = (basis_knots){.frame = malloc(frames * sizeof *out->frame), .place = calloc(frames, sizeof *out->place)};
-    double *way = malloc(frames * sizeof *way);
+    double *way = calloc(frames, sizeof *way);
     if (!out->frame || !out->place || !way) {
         free(way);
         basis_knots_free(out);
