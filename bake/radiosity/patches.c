@@ -145,7 +145,7 @@ static bool find_cells(clustering *k) {
     for (uint32_t i = 0; i < c->count; i++) {
         k->p->patch_of[i] = VIT_NONE;
         k->area[i] = cells_area(c, k->in->geometry, i);
-        if (!is_in(k->in, c->side_of[i]) || !(k->area[i] > 0.0f) || !(k->worth[i] > 0.0f) || k->p->part_of[i] != VIT_NONE)
+        if (!is_in(k->in, c->side_of[i]) || !(k->area[i] > 0.0f) || !(k->worth[i] > 0.0f) || k->p->apart.of[i] != VIT_NONE)
             continue;
         k->p->area += (double)k->area[i];
         k->order[count++] = i;
@@ -511,8 +511,8 @@ void patches_free(patch_set *p) {
     free(p->points);
     free(p->point_count);
     free(p->patch_of);
-    free(p->part_of);
-    free(p->parts);
+    separations_free(&p->apart);
+    free(p->beside);
     memset(p, 0, sizeof *p);
 }
 
@@ -534,9 +534,8 @@ uint32_t patches_place(const patch_set *p, uint32_t of, float u, float v, float 
 }
 
 uint32_t patches_at(const patch_set *p, uint32_t side, float b1, float b2) {
-    const uint32_t cell = cells_at(&p->cells, side, b1, b2), part = p->part_of[cell];
-    if (part == VIT_NONE)
+    const uint32_t cell = cells_at(&p->cells, side, b1, b2), apart = p->apart.of[cell];
+    if (apart == VIT_NONE)
         return p->patch_of[cell];
-    const patch_part *of = p->parts + part;
-    return of->patch[separation_front(of->apart.normal, of->apart.offset, side_place(p->geometry, side, b1, b2)) ? 0 : 1];
+    return p->beside[apart][separations_front(&p->apart, cell, side_place(p->geometry, side, b1, b2)) ? 0 : 1];
 }

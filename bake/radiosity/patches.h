@@ -36,12 +36,6 @@ typedef struct patch_point {
     float b1, b2;
 } patch_point;
 
-/* A cell that something stands on belongs to a patch on either side of it. */
-typedef struct patch_part {
-    separation apart;
-    uint32_t patch[2]; /* in front of the plane, behind it; VIT_NONE: none */
-} patch_part;
-
 typedef struct patch_set {
     const geometry *geometry;
     cells cells;
@@ -52,11 +46,10 @@ typedef struct patch_set {
     patch_point *points;   /* PATCHES_POINTS per patch: where paths from the cameras met it, as dense as they do */
     uint32_t *point_count; /* a patch: how many of its points are there */
     uint32_t *patch_of;    /* a cell: its patch, or VIT_NONE */
-    uint32_t *part_of;     /* a cell: which of parts it is, or VIT_NONE; then it belongs to no patch's cells */
-    patch_part *parts;
-    uint32_t part_count;
-    double area;   /* of all patches, m2 */
-    double hidden; /* share of pairs of cells of a patch that something between them hides from each other, by area */
+    separations apart;     /* cells that something stands on; they belong to no patch's cells */
+    uint32_t (*beside)[2]; /* one of these: its patches in front of the plane and behind it, or VIT_NONE */
+    double area;           /* of all patches, m2 */
+    double hidden;         /* share of pairs of cells of a patch that something between them hides from each other, by area */
 } patch_set;
 
 /* VIT_FAILED: out of memory. On failure there is nothing to free. A scene without a cell that reflects has no patch. */

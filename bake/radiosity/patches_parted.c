@@ -2,59 +2,43 @@
 #include "common/parallel.h"
 #include <stdlib.h>
 
-#define LIFT 0.04f        /* in edges: how far above the surface places look at each other */
 #define SPLIT_LEAST 0.04f /* of a square of the edge: smaller cells are not looked at for what stands on them */
 #define NEAREST 16u       /* cells that a part may belong to the patch of, if it sees them */
 
-static float lift_of(const patches_input *in, float edge) {
-    return float_max(edge * LIFT, 2.0f * in->rays->s->ray_offset);
-}
-
 typedef struct parting {
     const patches_input *in;
-    patch_set *p;
-    separation *found;
-    bool *is;
+    const patch_set *p;
     float edge;
 } parting;
 
-static void find_part(void *user, uint32_t cell) {
+static bool parted_cell(void *user, uint32_t cell, separation_cell *out) {
     const parting *s = user;
-    const cell_corners k = cells_corners(&s->p->cells, cell);
-    s->is[cell] =
-        cells_area(&s->p->cells, s->in->geometry, cell) > SPLIT_LEAST * s->edge * s->edge &&
-        separation_find(s->in->rays, s->in->geometry, s->p->cells.side_of[cell], &k, lift_of(s->in, s->edge), s->found + cell);
+    const cells *c = &s->p->cells;
+    *out = (separation_cell){c->side_of[cell], cells_corners(c, cell), separation_lift(s->in->rays, s->edge)};
+    return cells_area(c, s->in->geometry, cell) > SPLIT_LEAST * s->edge * s->edge;
 }
 
 bool patches_find_parts(const patches_input *in, float edge, patch_set *p) {
-    const uint32_t count = p->cells.count;
-    parting s = {.in = in,
-                 .p = p,
-                 .edge = edge,
-                 .found = malloc((count + 1u) * sizeof *s.found),
-                 .is = malloc((count + 1u) * sizeof *s.is)};
-    p->part_of = malloc((count + 1u) * sizeof *p->part_of);
-    bool fine = s.found && s.is && p->part_of;
-    if (fine) {
-        parallel_for(in->threads, count, find_part, &s);
-        for (uint32_t i = 0; i < count; i++)
-            p->part_of[i] = s.is[i] ? p->part_count++ : VIT_NONE;
-        p->parts = malloc((p->part_count + 1u) * sizeof *p->parts);
-        fine = p->parts != NULL;
-        for (uint32_t i = 0; i < count && fine; i++)
-            if (s.is[i])
-                p->parts[p->part_of[i]] = (patch_part){.apart = s.found[i], .patch = {VIT_NONE, VIT_NONE}};
-    }
-    free(s.found);
-    free(s.is);
-    return fine;
+    parting s = {in, p, edge};
+    const separations_input parting_input = {.rays = in->rays,
+                                             .geometry = in->geometry,
+                                             .count = p->cells.count,
+                                             .cell = parted_cell,
+                                             .user = &s,
+                                             .threads = in->threads};
+    if (!separations_find(&parting_input, &p->apart))
+        return false;
+    p->beside = malloc((p->apart.count + 1u) * sizeof *p->beside);
+    for (uint32_t i = 0; i < p->apart.count && p->beside; i++)
+        p->beside[i][0] = p->beside[i][1] = VIT_NONE;
+    return p->beside != NULL;
 }
 
 /* A place of the cell in this part, and if there is one a place that others see. */
 static vec3 place_in(const patches_input *in, const patch_set *p, uint32_t cell, uint32_t part, float lift) {
-    const separation *s = &p->parts[p->part_of[cell]].apart;
-    const uint32_t side = p->cells.side_of[cell], own = part == 0 ? s->places : ~s->places,
-                   all = own & ((1u << SEPARATION_PLACES) - 1u), among = all & ~s->alone ? all & ~s->alone : all;
+    const uint32_t side = p->cells.side_of[cell], front = p->apart.found[p->apart.of[cell]].places,
+                   all = part == 0 ? front : ~front & SEPARATION_EVERYWHERE, seen = all & ~p->apart.alone[cell],
+                   among = seen ? seen : all;
     const cell_corners k = cells_corners(&p->cells, cell);
     float b1, b2;
     separation_place(&k, among ? (uint32_t)__builtin_ctz(among) : 0, &b1, &b2);
@@ -141,19 +125,22 @@ static uint32_t patch_near(const placing *w, vec3 place, vec3 face) {
 static void place_part(void *user, uint32_t cell) {
     const placing *w = user;
     patch_set *p = w->p;
-    if (p->part_of[cell] == VIT_NONE || p->patch_of[cell] == VIT_NONE)
+    if (p->apart.of[cell] == VIT_NONE || p->patch_of[cell] == VIT_NONE)
         return;
     const vec3 face = side_face(w->in->geometry, p->cells.side_of[cell]);
     for (uint32_t part = 0; part < 2; part++)
-        p->parts[p->part_of[cell]].patch[part] = patch_near(w, place_in(w->in, p, cell, part, w->lift), face);
+        p->beside[p->apart.of[cell]][part] = patch_near(w, place_in(w->in, p, cell, part, w->lift), face);
 }
 
 bool patches_place_parts(const patches_input *in, float edge, patch_set *p) {
-    placing w = {.in = in, .p = p, .lift = lift_of(in, edge), .centres = malloc((p->cells.count + 1u) * sizeof *w.centres)};
+    placing w = {.in = in,
+                 .p = p,
+                 .lift = separation_lift(in->rays, edge),
+                 .centres = malloc((p->cells.count + 1u) * sizeof *w.centres)};
     if (!w.centres)
         return false;
     for (uint32_t i = 0; i < p->cells.count; i++)
-        if (p->patch_of[i] != VIT_NONE && p->part_of[i] == VIT_NONE)
+        if (p->patch_of[i] != VIT_NONE && p->apart.of[i] == VIT_NONE)
             w.centres[w.count++] = (centre){cells_center(&p->cells, in->geometry, i), i};
     qsort(w.centres, w.count, sizeof *w.centres, by_x);
     parallel_for(in->threads, p->cells.count, place_part, &w);

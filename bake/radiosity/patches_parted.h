@@ -5,7 +5,7 @@
 
 #include "radiosity/patches.h"
 
-/* edge: of cells, m. Fills part_of and parts. False: out of memory. */
+/* edge: of cells, m. Fills apart and beside. False: out of memory. */
 bool patches_find_parts(const patches_input *in, float edge, patch_set *p);
 /* Gives them their patches, once all other cells have theirs. False: out of memory. */
 bool patches_place_parts(const patches_input *in, float edge, patch_set *p);

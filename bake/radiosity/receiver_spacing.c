@@ -8,7 +8,6 @@
 #define RAYS 6e6             /* from the cameras, over all of these; at most one a pixel */
 #define UNSEEN_APART 0.02f   /* of the scene's size: receivers of sides that no ray met, should they be seen after all */
 #define MOST_REACH 8.0f      /* cells round one that a ray met that others may meet, each way */
-#define LIFT 0.04f           /* of the spacing: how far above the surface places look at each other */
 
 static float pixel_angle(const vit_camera *c) {
     const vec3 right = vec3_load(c->right);
@@ -104,11 +103,10 @@ bool receivers_find_spacing(placing *p) {
     p->spacing = malloc(((size_t)sides + 1u) * sizeof *p->spacing);
     p->seen = calloc((size_t)sides + 1u, sizeof *p->seen);
     p->met = calloc((size_t)sides + 1u, sizeof *p->met);
-    p->lift = malloc(((size_t)sides + 1u) * sizeof *p->lift);
     p->at = malloc(((size_t)sides + 1u) * sizeof *p->at);
     l.hit = malloc(((size_t)l.across * down + 1u) * sizeof *l.hit);
     p->sights = malloc(((size_t)l.across * down * frames + 1u) * sizeof *p->sights);
-    if (!p->spacing || !p->seen || !p->at || !p->met || !p->lift || !l.hit || !p->sights) {
+    if (!p->spacing || !p->seen || !p->at || !p->met || !l.hit || !p->sights) {
         free(l.hit);
         return false;
     }
@@ -143,7 +141,6 @@ bool receivers_find_spacing(placing *p) {
         p->out->lit_sides += takes;
         p->out->seen_sides += p->seen[i];
         p->spacing[i] = p->seen[i] ? p->spacing[i] : takes ? p->unseen : 0.0f;
-        p->lift[i] = float_max(p->spacing[i] * LIFT, 2.0f * in->rays->s->ray_offset);
     }
     return true;
 }

@@ -1,6 +1,5 @@
 #include "radiosity/receivers.h"
 #include "common/fail.h"
-#include "common/parallel.h"
 #include "radiosity/receivers_parts.h"
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +8,6 @@
 #define WELD_LEAST 0.08f /* likewise, at least */
 #define NORMAL_STEPS 12  /* of the octahedral square each way, for like normals */
 #define PULLED_IN 0.04f  /* of the way to the cell's middle: corners lie on edges, where others' surfaces begin */
-#define EVERYWHERE ((1u << SEPARATION_PLACES) - 1u)
 #define HARDLY_SEEN 3.0f /* spacings: corners of cells that no ray of a camera met share receivers as near as that */
 #define GROWTH 1.1f
 #define ROUNDS 4       /* of growth, at most */
@@ -153,24 +151,15 @@ static uint32_t corner_receiver(placing *p, const cornered *c, int corner, const
 
 /* 3. What stands on a cell. */
 
-typedef struct parting {
-    const placing *p;
-    separation *found; /* a cell, or a part */
-    bool *is;
-} parting;
-
 static float lift_of(const placing *p, uint32_t side, uint32_t parts) {
-    return float_max(p->lift[side] / (float)parts, 2.0f * p->in->rays->s->ray_offset);
+    return separation_lift(p->in->rays, p->spacing[side] / (float)parts);
 }
 
-static void find_parting(void *user, uint32_t cell) {
-    const parting *s = user;
-    const placing *p = s->p;
+static bool parted_cell(void *user, uint32_t cell, separation_cell *out) {
+    const placing *p = user;
     const uint32_t side = p->cells.side_of[cell];
-    const cell_corners k = cells_corners(&p->cells, cell);
-    s->found[cell] = (separation){.places = EVERYWHERE};
-    s->is[cell] = p->met[side] && p->looked_at[cell] &&
-                  separation_find(p->in->rays, p->in->geometry, side, &k, lift_of(p, side, 1), s->found + cell);
+    *out = (separation_cell){side, cells_corners(&p->cells, cell), lift_of(p, side, 1)};
+    return p->met[side] && p->looked_at[cell];
 }
 
 static cell_corners part_corners(const placing *p, uint32_t part) {
@@ -179,25 +168,17 @@ static cell_corners part_corners(const placing *p, uint32_t part) {
     return cells_within(&k, p->parts[cell], part - p->first_part[cell]);
 }
 
-static void find_parting_of_part(void *user, uint32_t part) {
-    const parting *s = user;
-    const placing *p = s->p;
+static bool parted_part(void *user, uint32_t part, separation_cell *out) {
+    const placing *p = user;
     const uint32_t cell = p->whole[part], side = p->cells.side_of[cell];
-    const cell_corners k = part_corners(p, part);
-    s->is[part] = separation_find(p->in->rays, p->in->geometry, side, &k, lift_of(p, side, p->parts[cell]), s->found + part);
-}
-
-static bool parting_make(parting *s, const placing *p, uint32_t count, void (*run)(void *user, uint32_t item)) {
-    *s = (parting){p, malloc((count + 1u) * sizeof *s->found), malloc((count + 1u) * sizeof *s->is)};
-    if (!s->found || !s->is)
-        return false;
-    parallel_for(p->in->threads, count, run, s);
+    *out = (separation_cell){side, part_corners(p, part), lift_of(p, side, p->parts[cell])};
     return true;
 }
 
-static void parting_free(parting *s) {
-    free(s->found);
-    free(s->is);
+static bool find_parted(placing *p, uint32_t count, bool (*cell)(void *, uint32_t, separation_cell *), separations *out) {
+    const separations_input in = {
+        .rays = p->in->rays, .geometry = p->in->geometry, .count = count, .cell = cell, .user = p, .threads = p->in->threads};
+    return separations_find(&in, out);
 }
 
 /* The place of those in `places` that is nearest to a corner; or the cell's middle. */
@@ -254,25 +235,27 @@ static bool make_room_for_split(placing *p) {
     return true;
 }
 
-/* Both readings of a cell, or of a part of one. */
-static bool take(placing *p, const cornered *c, const separation *apart, bool is, vit_receiver_cell *out) {
+/* Both readings of a cell, or of a part of one; which of those that were looked at. */
+static bool take(placing *p, const cornered *c, const separations *s, uint32_t which, vit_receiver_cell *out) {
     receivers *o = p->out;
-    const uint32_t before = apart->places & ~apart->alone, behind = EVERYWHERE & ~apart->places;
+    const separation *apart = s->of[which] == VIT_NONE ? NULL : s->found + s->of[which];
+    const uint32_t alone = s->alone[which], front = apart ? apart->places : SEPARATION_EVERYWHERE,
+                   back = SEPARATION_EVERYWHERE & ~front;
     out->split = VIT_NONE;
-    take_corners(p, c, before ? before : apart->places, out->receiver);
-    if (!is)
+    take_corners(p, c, front & ~alone ? front & ~alone : front, out->receiver);
+    if (!apart)
         return !p->failed;
     if (!make_room_for_split(p))
         return false;
     vit_receiver_split *t = o->splits + o->split_count;
     *t = (vit_receiver_split){.offset = apart->offset};
     memcpy(t->normal, apart->normal, sizeof t->normal);
-    take_corners(p, c, behind & ~apart->alone ? behind & ~apart->alone : behind, t->receiver);
+    take_corners(p, c, back & ~alone ? back & ~alone : back, t->receiver);
     out->split = o->split_count++;
     return !p->failed;
 }
 
-static bool take_cell(placing *p, const parting *s, uint32_t cell) {
+static bool take_cell(placing *p, const separations *s, uint32_t cell) {
     const uint32_t side = p->cells.side_of[cell];
     const float weld = p->looked_at[cell] ? weld_of(p, side) : float_min(p->spacing[side] * HARDLY_SEEN, p->unseen);
     const cornered c = {.side = side,
@@ -281,11 +264,11 @@ static bool take_cell(placing *p, const parting *s, uint32_t cell) {
                         .lift = lift_of(p, side, 1),
                         .seen = p->seen[side],
                         .only = p->cells.sides[side] >> VIT_SIDE_PARTS_SHIFT == 1};
-    return take(p, &c, s->found + cell, s->is[cell], p->out->cells + cell);
+    return take(p, &c, s, cell, p->out->cells + cell);
 }
 
 /* Parts have the cell's own receivers at its corners, and share those between them, and with neighbours' parts. */
-static bool take_parts(placing *p, const parting *s, uint32_t cell) {
+static bool take_parts(placing *p, const separations *s, uint32_t cell) {
     const uint32_t parts = p->parts[cell], first = p->first_part[cell], side = p->cells.side_of[cell];
     vit_receiver_cell *whole = p->out->cells + cell;
     uint32_t node[RECEIVER_NODES][RECEIVER_NODES], own[3];
@@ -306,42 +289,41 @@ static bool take_parts(placing *p, const parting *s, uint32_t cell) {
         cells_nodes(parts, k - first, i, j);
         for (int n = 0; n < 3; n++)
             own[n] = node[i[n]][j[n]];
-        fine = take(p, &c, s->found + k, s->is[k], out);
+        fine = take(p, &c, s, k, out);
         for (int n = 0; n < 3; n++)
             if (node[i[n]][j[n]] == VIT_NONE)
                 node[i[n]][j[n]] = out->receiver[n];
     }
     fine = fine && receivers_hang(p, cell, node);
     *whole = (vit_receiver_cell){.receiver = {p->cells.count + first, 0, 0}, .split = VIT_RECEIVER_DIVIDED | parts};
-    p->out->divided++;
     return fine;
 }
 
 static bool take_cells(placing *p) {
     receivers *o = p->out;
-    parting s = {0};
-    bool fine = parting_make(&s, p, p->cells.count, find_parting);
+    separations s = {0};
+    bool fine = find_parted(p, p->cells.count, parted_cell, &s);
     if (fine)
         o->cells = calloc((size_t)p->cells.count + 1u, sizeof *o->cells);
     fine = fine && o->cells;
     for (uint32_t i = 0; i < p->cells.count && fine; i++)
         fine = !(p->spacing[p->cells.side_of[i]] > 0.0f) || take_cell(p, &s, i);
-    parting_free(&s);
+    separations_free(&s);
     return fine;
 }
 
 static bool divide_cells(placing *p, const float *irradiance) {
     receivers *o = p->out;
-    parting s = {0};
-    bool fine = receivers_find_parts(p, irradiance) && receivers_find_edges(p) &&
-                parting_make(&s, p, p->part_count, find_parting_of_part);
+    separations s = {0};
+    bool fine =
+        receivers_find_parts(p, irradiance) && receivers_find_edges(p) && find_parted(p, p->part_count, parted_part, &s);
     vit_receiver_cell *more = fine ? realloc(o->cells, ((size_t)p->cells.count + p->part_count + 1u) * sizeof *more) : NULL;
     if (more)
         o->cells = more;
     fine = fine && more;
     for (uint32_t i = 0; i < p->cells.count && fine; i++)
         fine = p->parts[i] == 1 || take_parts(p, &s, i);
-    parting_free(&s);
+    separations_free(&s);
     return fine;
 }
 
@@ -451,7 +433,6 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
     free(p.spacing);
     free(p.seen);
     free(p.met);
-    free(p.lift);
     free(p.at);
     free(p.sights);
     drop_cells(&p);

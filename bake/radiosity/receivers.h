@@ -48,7 +48,6 @@ typedef struct receivers {
     receiver *receivers;        /* ordered so that neighbours in space are near each other in the list */
     receiver_hanging *hanging;
     uint32_t side_count, cell_count, split_count, count, hanging_count;
-    uint32_t divided;    /* cells, as their light changes much */
     uint32_t seen_sides; /* of triangles, by the path's cameras */
     uint32_t lit_sides;  /* that light can reach, of matt materials */
 } receivers;

@@ -18,7 +18,6 @@ typedef struct placing {
     float *spacing; /* a side, m; 0: it is dark, or no light stays on it */
     bool *seen;     /* a side: by the cameras' rays, or beside one that they met */
     bool *met;      /* a side: by the cameras' rays */
-    float *lift;    /* a side: how far above it places look at each other, m */
     float (*at)[2]; /* a seen side: where the nearest of them met it, barycentric weights */
     float unseen;   /* spacing of the others, m */
     uint32_t step;  /* pixels between the cameras' rays, each way */
@@ -41,7 +40,7 @@ typedef struct placing {
     bool failed;
 } placing;
 
-/* receiver_spacing.c: `spacing`, `seen`, `met`, `lift`, `at`, `sights`. False: out of memory. */
+/* receiver_spacing.c: `spacing`, `seen`, `met`, `at`, `sights`. False: out of memory. */
 bool receivers_find_spacing(placing *p);
 /* `looked_at`, once there are cells. */
 bool receivers_find_looked_at(placing *p);

@@ -1,4 +1,6 @@
 #include "radiosity/separation.h"
+#include "common/parallel.h"
+#include <stdlib.h>
 
 #define NEAR_CORNER 0.98f /* of the way from the middle to a corner */
 #define EVEN 16u          /* places even over the cell; the last three are its corners */
@@ -53,13 +55,13 @@ static void note(search *s, vec3 a, vec3 b) {
 }
 
 /* Cheap: corners. A plane that crosses a triangle parts one of them from the others, so that most cells pass, and are done. */
-static bool looks_open(search *s, uint32_t side, const cell_corners *k, float lift) {
-    const vec3 face = side_face(s->g, side);
+static bool looks_open(search *s, const separation_cell *c) {
+    const vec3 face = side_face(s->g, c->side);
     vec3 p[3];
     for (uint32_t i = 0; i < 3; i++) {
         float b1, b2;
-        separation_place(k, EVEN + i, &b1, &b2);
-        p[i] = vec3_along(side_place(s->g, side, b1, b2), face, lift);
+        separation_place(&c->corners, EVEN + i, &b1, &b2);
+        p[i] = vec3_along(side_place(s->g, c->side, b1, b2), face, c->lift);
     }
     bool open = true;
     for (int a = 0; a < 3; a++) {
@@ -73,12 +75,12 @@ static bool looks_open(search *s, uint32_t side, const cell_corners *k, float li
     return open;
 }
 
-static void look_round(search *s, uint32_t side, const cell_corners *k, float lift) {
-    const vec3 face = side_face(s->g, side);
+static void look_round(search *s, const separation_cell *c) {
+    const vec3 face = side_face(s->g, c->side);
     for (uint32_t i = 0; i < SEPARATION_PLACES; i++) {
         float b1, b2;
-        separation_place(k, i, &b1, &b2);
-        s->at[i] = vec3_along(side_place(s->g, side, b1, b2), face, lift);
+        separation_place(&c->corners, i, &b1, &b2);
+        s->at[i] = vec3_along(side_place(s->g, c->side, b1, b2), face, c->lift);
         s->hidden[i] = 0;
     }
     for (uint32_t a = 0; a < SEPARATION_PLACES; a++)
@@ -100,33 +102,71 @@ static int pairs_between(const search *s, uint32_t from, uint32_t to, bool hidde
     return sum;
 }
 
-bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, const cell_corners *k, float lift,
-                     separation *out) {
-    search s = {.rays = rays, .g = g};
-    const uint32_t all = (1u << SEPARATION_PLACES) - 1u;
-    *out = (separation){.places = all};
-    if (looks_open(&s, side, k, lift))
-        return false;
-    look_round(&s, side, k, lift);
-    for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
-        out->alone |= (s.hidden[i] | 1u << i) == all ? 1u << i : 0u;
+/* The plane between the places that parts most pairs that do not see each other, and fewest that do. False: none does. */
+static bool find_plane(const search *s, separation *out) {
     int best = 0;
-    for (uint32_t c = 0; c < s.planes; c++) {
-        const vec3 n = side_face(g, 2 * s.triangle[c]);
-        const float offset = vec3_dot(n, vec3_load(g->triangles[s.triangle[c]].v0));
+    for (uint32_t c = 0; c < s->planes; c++) {
+        const vec3 n = side_face(s->g, 2 * s->triangle[c]);
+        const float offset = vec3_dot(n, vec3_load(s->g->triangles[s->triangle[c]].v0));
         uint32_t front = 0;
         for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
-            front |= vec3_dot(n, s.at[i]) > offset ? 1u << i : 0u;
-        const uint32_t a = front, b = ~front & all;
-        const int score = pairs_between(&s, a, b, true) - pairs_between(&s, a, b, false);
+            front |= vec3_dot(n, s->at[i]) > offset ? 1u << i : 0u;
+        const uint32_t a = front, b = ~front & SEPARATION_EVERYWHERE;
+        const int score = pairs_between(s, a, b, true) - pairs_between(s, a, b, false);
         if (a && b && score > best) {
             best = score;
-            out->places = a;
-            out->normal[0] = n.x;
-            out->normal[1] = n.y;
-            out->normal[2] = n.z;
-            out->offset = offset;
+            *out = (separation){.normal = {n.x, n.y, n.z}, .offset = offset, .places = a};
         }
     }
     return best > 0;
+}
+
+typedef struct finding {
+    const separations_input *in;
+    separation *found; /* a cell */
+    bool *is;
+    uint32_t *alone;
+} finding;
+
+static void find(void *user, uint32_t number) {
+    const finding *f = user;
+    search s = {.rays = f->in->rays, .g = f->in->geometry};
+    separation_cell c;
+    f->is[number] = false;
+    f->alone[number] = 0;
+    if (!f->in->cell(f->in->user, number, &c) || looks_open(&s, &c))
+        return;
+    look_round(&s, &c);
+    for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
+        f->alone[number] |= (s.hidden[i] | 1u << i) == SEPARATION_EVERYWHERE ? 1u << i : 0u;
+    f->is[number] = find_plane(&s, f->found + number);
+}
+
+bool separations_find(const separations_input *in, separations *out) {
+    const size_t room = (size_t)in->count + 1u;
+    *out = (separations){.of = malloc(room * sizeof *out->of), .alone = malloc(room * sizeof *out->alone)};
+    finding f = {in, malloc(room * sizeof *f.found), malloc(room * sizeof *f.is), out->alone};
+    bool fine = out->of && out->alone && f.found && f.is;
+    if (fine) {
+        parallel_for(in->threads, in->count, find, &f);
+        for (uint32_t i = 0; i < in->count; i++)
+            out->of[i] = f.is[i] ? out->count++ : VIT_NONE;
+        out->found = malloc((out->count + 1u) * sizeof *out->found);
+        fine = out->found != NULL;
+    }
+    for (uint32_t i = 0; i < in->count && fine; i++)
+        if (f.is[i])
+            out->found[out->of[i]] = f.found[i];
+    free(f.found);
+    free(f.is);
+    if (!fine)
+        separations_free(out);
+    return fine;
+}
+
+void separations_free(separations *s) {
+    free(s->of);
+    free(s->alone);
+    free(s->found);
+    *s = (separations){0};
 }

@@ -7,23 +7,54 @@
 #include "light/photon_rays.h"
 
 #define SEPARATION_PLACES 19u /* of a cell that look at each other */
+#define SEPARATION_EVERYWHERE ((1u << SEPARATION_PLACES) - 1u)
+#define SEPARATION_LIFT 0.04f /* of a cell's edge: how far above the surface places look at each other */
 
 typedef struct separation {
     float normal[3], offset; /* places p with normal . p > offset are in front */
     uint32_t places;         /* bits: places of the cell in front */
-    uint32_t alone;          /* bits: places that no other place sees, as inside of what stands there */
 } separation;
+
+/* A cell that is looked at. */
+typedef struct separation_cell {
+    uint32_t side;
+    cell_corners corners;
+    float lift; /* how far above the surface its places look at each other, m: separation_lift() */
+} separation_cell;
+
+typedef struct separations_input {
+    const photon_rays *rays;
+    const geometry *geometry;
+    uint32_t count;                                                  /* of cells */
+    bool (*cell)(void *user, uint32_t number, separation_cell *out); /* false: nothing stands on it */
+    void *user;
+    unsigned threads; /* 0: all cores; changes no byte */
+} separations_input;
+
+typedef struct separations {
+    uint32_t *of; /* a cell: what parts it, of `found`; VIT_NONE: all its places see each other, or no plane explains why not */
+    uint32_t *alone; /* a cell, bits: places that no other place sees, as inside of what stands there */
+    separation *found;
+    uint32_t count; /* of found */
+} separations;
 
 /* Place i of a cell, 0 <= i < SEPARATION_PLACES, even over it: barycentric weights in its triangle. */
 void separation_place(const cell_corners *k, uint32_t i, float *b1, float *b2);
-/* False: all places see each other, `lift` metres above the surface, or no plane explains why not; then all are in front. */
-bool separation_find(const photon_rays *rays, const geometry *g, uint32_t side, const cell_corners *k, float lift,
-                     separation *out);
+/* False: out of memory; there is nothing to free. */
+bool separations_find(const separations_input *in, separations *out);
+void separations_free(separations *s);
 /* Does a place see another? Both on sides of triangles, lifted along their faces. */
 bool separation_sees(const photon_rays *rays, vec3 a, vec3 b);
 
-static inline bool separation_front(const float normal[3], float offset, vec3 p) {
-    return vec3_dot(vec3_load(normal), p) > offset;
+/* In front of what stands on the cell? True of every place where nothing does. */
+static inline bool separations_front(const separations *s, uint32_t cell, vec3 p) {
+    const separation *apart = s->of[cell] == VIT_NONE ? NULL : s->found + s->of[cell];
+    return !apart || vec3_dot(vec3_load(apart->normal), p) > apart->offset;
+}
+
+/* For cells of an edge in metres. m */
+static inline float separation_lift(const photon_rays *rays, float edge) {
+    return float_max(edge * SEPARATION_LIFT, 2.0f * rays->s->ray_offset);
 }
 
 #endif

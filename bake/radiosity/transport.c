@@ -107,8 +107,7 @@ static bool compute(transport *t, float *irradiance) {
 static void drop(transport *t) {
     cells_free(&t->cells);
     free(t->edge);
-    free(t->split);
-    free(t->splits);
+    separations_free(&t->apart);
     free(t->number);
     free(t->cell);
     free(t->place_count);
@@ -123,7 +122,7 @@ vit_status transport_find(const transport_input *in, float *irradiance, transpor
     vit_text divided = {""};
     const bool fine = transport_divide(&t, &divided) && transport_gather(&t) && compute(&t, irradiance);
     report->cells = t.count;
-    report->splits = t.split_count;
+    report->splits = t.apart.count;
     drop(&t);
     if (fine)
         return VIT_OK;

@@ -75,13 +75,12 @@ static uint32_t chosen(const targets *g, double at) {
 
 /* The place of a bright cell that chance finds. False: it is on the other side of what stands on the cell. */
 static bool place_on(const transport *t, uint32_t number, float x, float y, vec3 *out) {
-    const uint32_t cell = t->cell[number] / 2, split = t->split[cell];
+    const uint32_t cell = t->cell[number] / 2;
     const cell_corners c = cells_corners(&t->cells, cell);
     const float u = sqrtf(x), w[3] = {1.0f - u, u * (1.0f - y), u * y};
     const float b1 = w[0] * c.b1[0] + w[1] * c.b1[1] + w[2] * c.b1[2], b2 = w[0] * c.b2[0] + w[1] * c.b2[1] + w[2] * c.b2[2];
     *out = side_place(t->in->geometry, t->cells.side_of[cell], b1, b2);
-    return split == VIT_NONE ||
-           separation_front(t->splits[split].normal, t->splits[split].offset, *out) == ((t->cell[number] & 1) == 0);
+    return separations_front(&t->apart, cell, *out) == ((t->cell[number] & 1) == 0);
 }
 
 /* Form factor of one ray from a receiver to the place, over the density of such rays; 0: they do not see each other. */

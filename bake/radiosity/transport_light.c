@@ -8,7 +8,6 @@
 #define MORE_LOOKS 384.0    /* at lights, per cell that is wanted, shared out by how much each adds to the error */
 #define BLOCK 64u           /* cells that are alike in how light varies on them */
 #define MOST_SAMPLES 16384u /* of a cell */
-#define LIFT 0.04f          /* in edges: as in transport_rows.c */
 
 /* A light that is everywhere else than at one place or in one direction: looked at by chance. */
 static bool is_sampled(const photons_light *l) {
@@ -149,9 +148,9 @@ static void light_cell(void *user, uint32_t n, uint64_t *rays) {
 
 /* A place of the cell's part that chance finds, if one of the places where rays met it sees it. */
 static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge, transport_place *out) {
-    const uint32_t cell = t->cell[n] / 2, part = t->cell[n] & 1, split = t->split[cell], side = t->cells.side_of[cell];
+    const uint32_t cell = t->cell[n] / 2, part = t->cell[n] & 1, side = t->cells.side_of[cell];
     const cell_corners c = cells_corners(&t->cells, cell);
-    const vec3 up = vec3_scale(side_face(t->in->geometry, side), float_max(edge * LIFT, 2.0f * t->in->rays->s->ray_offset));
+    const vec3 up = vec3_scale(side_face(t->in->geometry, side), separation_lift(t->in->rays, edge));
     const float u = sqrtf(unit_float(k * 0xc13fa9a9u + pcg(n))), v = unit_float(k * 0x91e10da5u + pcg(n ^ 0x5bd1e995u));
     const float w[3] = {1.0f - u, u * (1.0f - v), u * v};
     *out = (transport_place){.side = side};
@@ -160,7 +159,7 @@ static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge
         out->b2 += w[i] * c.b2[i];
     }
     const vec3 at = transport_place_at(t, out);
-    if (split != VIT_NONE && separation_front(t->splits[split].normal, t->splits[split].offset, at) != (part == 0))
+    if (separations_front(&t->apart, cell, at) != (part == 0))
         return false;
     const transport_place *known = t->places + (size_t)n * TRANSPORT_PLACES + pcg(k) % t->place_count[n];
     return separation_sees(t->in->rays, vec3_along(at, up, 1.0f), vec3_along(transport_place_at(t, known), up, 1.0f));

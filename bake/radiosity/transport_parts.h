@@ -26,10 +26,8 @@ typedef struct transport {
     const transport_input *in;
     transport_report *report;
     cells cells;
-    float *edge;     /* a side: wanted edge of its cells, m; 0: no light comes from it */
-    uint32_t *split; /* a cell: of splits, or VIT_NONE */
-    separation *splits;
-    uint32_t split_count;
+    float *edge;          /* a side: wanted edge of its cells, m; 0: no light comes from it */
+    separations apart;    /* cells that something stands on: two parts */
     uint32_t *number;     /* 2 a cell, its two parts: number among those that light comes from, VIT_NONE: none has come yet */
     uint32_t count, room; /* numbered */
     uint32_t *cell;       /* a number: 2 * cell + part */

@@ -8,7 +8,6 @@
 #define PILOT_LEAST 4.0f /* hits of a side that are believed */
 #define EDGE_RANGE 6.0f  /* cells' edges are at most so many times larger or smaller than if all were alike */
 #define SPLIT_LEAST 0.2f /* cells much smaller than others are not looked at for what stands on them */
-#define LIFT 0.04f       /* how far above the surface places look at each other, in edges */
 #define BATCH 1024u      /* rows between two times that their hits are noted */
 #define LEAST_RAYS 8u    /* of a cell that light comes from */
 #define MOST_RAYS 256u
@@ -84,48 +83,27 @@ static bool find_edges(transport *t) {
     return true;
 }
 
-typedef struct parting {
-    const transport *t;
-    separation *found;
-    bool *is;
-} parting;
-
-static void find_parting(void *user, uint32_t cell) {
-    const parting *s = user;
-    const transport *t = s->t;
+static bool parted_cell(void *user, uint32_t cell, separation_cell *out) {
+    const transport *t = user;
     const uint32_t side = t->cells.side_of[cell];
     const float edge = t->edge[side];
-    const cell_corners k = cells_corners(&t->cells, cell);
-    s->is[cell] = edge > 0.0f && cells_area(&t->cells, t->in->geometry, cell) > SPLIT_LEAST * SPLIT_LEAST * edge * edge &&
-                  separation_find(t->in->rays, t->in->geometry, side, &k,
-                                  float_max(edge * LIFT, 2.0f * t->in->rays->s->ray_offset), s->found + cell);
+    *out = (separation_cell){side, cells_corners(&t->cells, cell), separation_lift(t->in->rays, edge)};
+    return edge > 0.0f && cells_area(&t->cells, t->in->geometry, cell) > SPLIT_LEAST * SPLIT_LEAST * edge * edge;
 }
 
-static bool find_splits(transport *t) {
-    const uint32_t count = t->cells.count;
-    parting s = {.t = t, .found = malloc((count + 1u) * sizeof *s.found), .is = malloc((count + 1u) * sizeof *s.is)};
-    t->split = malloc((count + 1u) * sizeof *t->split);
-    bool fine = s.found && s.is && t->split;
-    if (fine) {
-        parallel_for(t->in->threads, count, find_parting, &s);
-        for (uint32_t i = 0; i < count; i++)
-            t->split_count += s.is[i];
-        t->splits = malloc((t->split_count + 1u) * sizeof *t->splits);
-        fine = t->splits != NULL;
-        for (uint32_t i = 0, n = 0; i < count && fine; i++) {
-            t->split[i] = s.is[i] ? n : VIT_NONE;
-            if (s.is[i])
-                t->splits[n++] = s.found[i];
-        }
-    }
-    free(s.found);
-    free(s.is);
-    return fine;
+static bool find_parted(transport *t) {
+    const separations_input in = {.rays = t->in->rays,
+                                  .geometry = t->in->geometry,
+                                  .count = t->cells.count,
+                                  .cell = parted_cell,
+                                  .user = t,
+                                  .threads = t->in->threads};
+    return separations_find(&in, &t->apart);
 }
 
 bool transport_divide(transport *t, vit_text *why) {
     if (!find_edges(t) || cells_divide(t->in->geometry, t->in->rays->s->triangle_count, edge_of, t, &t->cells, why) != VIT_OK ||
-        !find_splits(t))
+        !find_parted(t))
         return false;
     t->number = malloc((2u * (size_t)t->cells.count + 1u) * sizeof *t->number);
     if (!t->number)
@@ -151,11 +129,8 @@ typedef struct shooting {
 } shooting;
 
 static uint32_t part_of(const transport *t, const gather_hit *h) {
-    const uint32_t cell = cells_at(&t->cells, h->side, h->b1, h->b2), split = t->split[cell];
-    if (split == VIT_NONE)
-        return 2 * cell;
-    const separation *s = t->splits + split;
-    return 2 * cell + !separation_front(s->normal, s->offset, side_place(t->in->geometry, h->side, h->b1, h->b2));
+    const uint32_t cell = cells_at(&t->cells, h->side, h->b1, h->b2);
+    return 2 * cell + !separations_front(&t->apart, cell, side_place(t->in->geometry, h->side, h->b1, h->b2));
 }
 
 static int by_part(const void *a, const void *b) {
