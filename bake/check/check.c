@@ -1,6 +1,7 @@
 /* Pixels, reference, comparison; check_say.c has the words. */
 #include "check/check.h"
 #include "common/fail.h"
+#include "common/kernel_math.h"
 #include "pack/opened.h"
 #include <math.h>
 #include <stdlib.h>
@@ -22,8 +23,8 @@ void check_choose(uint32_t frames, uint32_t width, uint32_t height, check *out) 
     for (uint32_t i = 0; i < out->count; i++) { /* an even sequence in two dimensions (Roberts 2018), 32 bits of its steps */
         spot *s = out->spots + i;
         s->frame = i * out->frame_count / out->count;
-        s->x = (uint32_t)((uint64_t)(0x80000000u + i * 0xc13fa9a9u) * width >> 32);
-        s->y = (uint32_t)((uint64_t)(0x80000000u + i * 0x91e10da5u) * height >> 32);
+        s->x = (uint32_t)((uint64_t)(0x80000000u + i * LATTICE_U) * width >> 32);
+        s->y = (uint32_t)((uint64_t)(0x80000000u + i * LATTICE_V) * height >> 32);
     }
 }
 

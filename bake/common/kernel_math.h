@@ -136,6 +136,19 @@ static inline float unit_float(uint32_t v) {
     return (float)(v >> 8) * 0x1p-24f;
 }
 
+/* Point i of a plane lattice, any stretch of which is even over the unit square (Roberts 2018), moved by `shift`: steps of 1 /
+ * p and 1 / p^2 with p^3 = p + 1, times 2^32. */
+#define LATTICE_U 0xc13fa9a9u
+#define LATTICE_V 0x91e10da5u
+
+static inline float lattice_u(uint32_t i, uint32_t shift) {
+    return unit_float(i * LATTICE_U + shift);
+}
+
+static inline float lattice_v(uint32_t i, uint32_t shift) {
+    return unit_float(i * LATTICE_V + shift);
+}
+
 /* Every second bit of v, packed. */
 static inline uint32_t even_bits(uint32_t v) {
     v &= 0x55555555u;

@@ -27,7 +27,7 @@ static void trace(void *user, uint32_t path) {
         const photon_surface s = photon_surface_at(of, o, d, t, triangle);
         if (hit == 0 && !w->l->area && !w->l->sky)
             power = vec3_scale(power, light_left(&w->l->light, t * t));
-        if (VIT_KIND_WITH(s.material->kind, of->effects & VIT_BIT(MIRROR), of->effects & VIT_BIT(GLASS)) == VIT_MATTE) {
+        if (photon_is_matt(of, s.material)) {
             const float mean = (power.x + power.y + power.z) / 3.0f;
             w->landed[path] = hit > 0 ? -mean : mean;
             return;

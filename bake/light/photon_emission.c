@@ -25,8 +25,8 @@ static emission leave_light(const vit_light *light, uint32_t count, float u, flo
 /* A plane sequence for the dimensions that the curve leaves (Roberts 2018), so that any stretch of paths, which start alike in
  * the curve's two, is spread in these. */
 static void plane_point(uint32_t i, double *x, double *y) {
-    *x = ((double)(i * 0xc13fa9a9u) + 0.5) * 0x1p-32;
-    *y = ((double)(i * 0x91e10da5u) + 0.5) * 0x1p-32;
+    *x = ((double)(i * LATTICE_U) + 0.5) * 0x1p-32;
+    *y = ((double)(i * LATTICE_V) + 0.5) * 0x1p-32;
 }
 
 /* From a point of a shining side, by the cosine: flux pi L dA. */

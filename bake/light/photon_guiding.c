@@ -95,8 +95,8 @@ static void join(finding *f, uint32_t path, uint32_t frame, const photon_surface
 
 static vec3 camera_ray(const finding *f, uint32_t path, uint32_t frame) {
     const vit_camera *c = f->in->tracks->cameras + frame;
-    const float x = (float)((double)(path * 0xc13fa9a9u) * 0x1p-32 * f->in->width),
-                y = (float)((double)(path * 0x91e10da5u) * 0x1p-32 * f->in->height);
+    const float x = (float)((double)(path * LATTICE_U) * 0x1p-32 * f->in->width),
+                y = (float)((double)(path * LATTICE_V) * 0x1p-32 * f->in->height);
     return vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), vec3_load(c->right), x), vec3_load(c->down), y));
 }
 
@@ -116,7 +116,7 @@ static void trace(void *user, uint32_t slot) {
             return;
         const photon_surface s = photon_surface_at(&in->scene, o, d, t, triangle);
         const float u = throw(&random), v = throw(&random);
-        if (VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) != VIT_MATTE) {
+        if (!photon_is_matt(&in->scene, s.material)) {
             d = photons_specular_bounce(&s, d, t, u, &o, &power);
             others++;
             continue;

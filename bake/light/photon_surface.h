@@ -28,6 +28,11 @@ typedef struct photon_surface {
     bool back; /* the back of the triangle */
 } photon_surface;
 
+/* Photons and rays that look for light end there; they go on from mirrors and glass, as far as the scene has these effects. */
+static inline bool photon_is_matt(const photon_scene *s, const vit_material *m) {
+    return VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
+}
+
 /* The surface `distance` metres along the unit direction, on `triangle`; as surface_at() of kernels/surface.clh. */
 photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle);
 /* The same through a footprint of `cone` metres a metre of distance; b: the hit's barycentric weights. */

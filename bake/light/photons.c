@@ -94,7 +94,7 @@ static void trace_path(const baking *b, const photons_light *l, vit_photon *slot
         const photon_surface s = photon_surface_seen(b->rays.s, o, d, t, triangle, PHOTON_CONE, weight_of);
         if (b->in->met)
             __atomic_store_n(&b->in->met[s.material - b->in->materials], 1, __ATOMIC_RELAXED);
-        const bool matt = VIT_KIND_WITH(s.material->kind, effects & VIT_BIT(MIRROR), effects & VIT_BIT(GLASS)) == VIT_MATTE;
+        const bool matt = photon_is_matt(b->rays.s, s.material);
         if (!matt && !(effects & VIT_BIT(CAUSTICS)))
             return;
         if (hit > 0 && matt)

@@ -4,8 +4,7 @@
 #define MOST_MIRRORS 16u /* that a ray meets one after another */
 
 bool gather_is_matt(const photon_scene *s, uint32_t triangle) {
-    const vit_material *m = s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX);
-    return VIT_KIND_WITH(m->kind, s->effects & VIT_BIT(MIRROR), s->effects & VIT_BIT(GLASS)) == VIT_MATTE;
+    return photon_is_matt(s, s->materials + (s->attributes[triangle].material & VIT_MATERIAL_INDEX));
 }
 
 gather_hit gather(const photon_rays *rays, const geometry *g, vec3 o, vec3 d, uint32_t chance) {

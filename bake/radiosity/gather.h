@@ -12,7 +12,7 @@ typedef struct gather_hit {
     float weight;   /* what mirrors and glass on the way left, 0..1: mean of the channels */
 } gather_hit;
 
-/* Rays end there; they go on from mirrors and glass, as far as the scene has these effects. */
+/* photon_is_matt() of a triangle. */
 bool gather_is_matt(const photon_scene *s, uint32_t triangle);
 
 /* `chance`: a number whose bits decide between reflection and refraction. */

@@ -57,7 +57,7 @@ static void look(void *user, uint32_t item) {
     const vec3 from = vec3_along(side_place(in->geometry, r->side, r->b1, r->b2), face, in->rays->s->ray_offset);
     seen *hits = w->hits + (size_t)item * rays;
     for (uint32_t i = 0; i < rays; i++) {
-        const float u = unit_float(i * 0xc13fa9a9u + shift), v = unit_float(i * 0x91e10da5u + pcg(shift));
+        const float u = lattice_u(i, shift), v = lattice_v(i, pcg(shift));
         const vec3 d = vec3_cosine(about, u, v);
         hits[i] = (seen){.patch = VIT_NONE};
         if (!(vec3_dot(d, face) > 0.0f))

@@ -87,7 +87,7 @@ static void pilot_path(void *user, uint32_t path) {
     const vit_camera *c = in->tracks->cameras + pcg(path) % in->frames;
     uint32_t chance = pcg(path ^ 0x5bd1e995u);
     patch_point *met = w->met + (size_t)PATH_HITS * path;
-    const float x = unit_float(path * 0xc13fa9a9u) * (float)in->width, y = unit_float(path * 0x91e10da5u) * (float)in->height;
+    const float x = lattice_u(path, 0) * (float)in->width, y = lattice_v(path, 0) * (float)in->height;
     vec3 o = vec3_load(c->eye),
          d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), vec3_load(c->right), x), vec3_load(c->down), y));
     for (uint32_t hit = 0; hit < PATH_HITS; hit++)

@@ -101,8 +101,8 @@ static void add(float *to, vec3 v, float scale) {
 }
 
 static float numbers(uint32_t seed, uint32_t i, float *v) {
-    *v = unit_float(i * 0x91e10da5u + pcg(seed ^ 0x68bc21ebu));
-    return unit_float(i * 0xc13fa9a9u + seed);
+    *v = lattice_v(i, pcg(seed ^ 0x68bc21ebu));
+    return lattice_u(i, seed);
 }
 
 /* One sample of a cell's radiosity in all states; repeats: of lights that are found by chance. Returns the sum. */
@@ -151,7 +151,7 @@ static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge
     const uint32_t cell = t->cell[n] / 2, part = t->cell[n] & 1, side = t->cells.side_of[cell];
     const cell_corners c = cells_corners(&t->cells, cell);
     const vec3 up = vec3_scale(side_face(t->in->geometry, side), separation_lift(t->in->rays, edge));
-    const float u = sqrtf(unit_float(k * 0xc13fa9a9u + pcg(n))), v = unit_float(k * 0x91e10da5u + pcg(n ^ 0x5bd1e995u));
+    const float u = sqrtf(lattice_u(k, pcg(n))), v = lattice_v(k, pcg(n ^ 0x5bd1e995u));
     const float w[3] = {1.0f - u, u * (1.0f - v), u * v};
     *out = (transport_place){.side = side};
     for (int i = 0; i < 3; i++) {

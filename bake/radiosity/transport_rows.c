@@ -164,7 +164,7 @@ static void shoot_row(void *user, uint32_t item) {
         }
         const uint32_t n = s->receivers ? i : i / t->place_count[row],
                        shift = s->receivers ? seed : pcg(seed + i % t->place_count[row]);
-        const float u = unit_float(n * 0xc13fa9a9u + shift), v = unit_float(n * 0x91e10da5u + pcg(shift));
+        const float u = lattice_u(n, shift), v = lattice_v(n, pcg(shift));
         const vec3 d = vec3_cosine(about, u, v);
         hits[i] = (found){.part = VIT_NONE};
         if (!(vec3_dot(d, side_face(in->geometry, from.side)) > 0.0f))

@@ -12,10 +12,10 @@
 #define PILOT_FRAMES 8u
 #define PILOT_FIRST 0x40000000u /* path numbers, and so random numbers, that playing does not use */
 
-/* An even sequence in two dimensions, shifted for each stream (Roberts 2018). */
+/* A lattice, shifted for each stream. */
 static void spread(uint32_t stream, uint32_t i, float *u, float *v) {
-    *u = unit_float(pcg(stream * 2u) + i * 0xc13fa9a9u);
-    *v = unit_float(pcg(stream * 2u + 1u) + i * 0x91e10da5u);
+    *u = lattice_u(i, pcg(stream * 2u));
+    *v = lattice_v(i, pcg(stream * 2u + 1u));
 }
 
 /* Surfaces farther than the radius from all that is seen do not matter. */
