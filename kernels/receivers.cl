@@ -68,7 +68,7 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     lu kind = l_gather_u(cells, at.index * 4 + 3);
-    li own, divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_DIVIDED, but not VIT_NONE */
+    li own, divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
     if (l_any(divided)) {
         cell_place within =
             cell_among(L_AS_INT(l_gather_u(cells, divided & (at.index * 4))), L_AS_INT(kind & 255u), at.w1, at.w2);

@@ -10,10 +10,6 @@ static vit_status check_receivers(const vit_scene *s, const vit_u32 receiver[3],
     return VIT_OK;
 }
 
-static int is_divided(const vit_receiver_cell *c) {
-    return c->split != VIT_NONE && (c->split & VIT_RECEIVER_DIVIDED) != 0;
-}
-
 /* Cells of a divided one lie behind all that are divided, so that none of them is. */
 static vit_status check_divided(const vit_scene *s, const vit_receiver_cell *c, vit_u32 i, vit_u32 last, vit_text *why) {
     const vit_u32 parts = c->split & ~VIT_RECEIVER_DIVIDED;
@@ -32,10 +28,10 @@ vit_status vit_pack_check_RCEL(const vit_pack *p, vit_text *why) {
     const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
     vit_u32 last = 0;
     for (vit_u32 i = 0; i < s->receiver_cells; i++)
-        last = is_divided(VIT_RECORD(vit_receiver_cell, cells, i)) ? i : last;
+        last = VIT_RECEIVER_IS_DIVIDED(VIT_RECORD(vit_receiver_cell, cells, i)->split) ? i : last;
     for (vit_u32 i = 0; i < s->receiver_cells; i++) {
         const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
-        if (is_divided(c)) {
+        if (VIT_RECEIVER_IS_DIVIDED(c->split)) {
             const vit_status status = check_divided(s, c, i, last, why);
             if (status != VIT_OK)
                 return status;

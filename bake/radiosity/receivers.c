@@ -357,7 +357,7 @@ static void drop_dark(placing *p) {
     }
     const uint32_t dropped = p->cells.count - o->cell_count;
     for (uint32_t i = 0; i < o->cell_count; i++)
-        if (o->cells[i].split != VIT_NONE && o->cells[i].split & VIT_RECEIVER_DIVIDED)
+        if (VIT_RECEIVER_IS_DIVIDED(o->cells[i].split))
             o->cells[i].receiver[0] -= dropped;
     memmove(o->cells + o->cell_count, o->cells + p->cells.count, p->part_count * sizeof *o->cells);
     o->cell_count += p->part_count;

@@ -239,11 +239,11 @@ static void follow_receiver_cells(const vit_pack *p) {
     const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
     const vit_receiver_split *splits = p->section[VIT_SECTION_RSPL];
     for (vit_u32 i = 0; i < p->scene->receiver_cells; i++) {
-        if (cells[i].split != VIT_NONE && cells[i].split & VIT_RECEIVER_DIVIDED) {
+        if (VIT_RECEIVER_IS_DIVIDED(cells[i].split)) {
             const vit_u32 parts = cells[i].split & ~VIT_RECEIVER_DIVIDED, end = cells[i].receiver[0] + parts * parts;
             FUZZ_HOLDS(parts >= 1 && parts <= VIT_RECEIVER_PARTS && end <= p->scene->receiver_cells);
             for (vit_u32 k = cells[i].receiver[0]; k < end; k++)
-                FUZZ_HOLDS(cells[k].split == VIT_NONE || !(cells[k].split & VIT_RECEIVER_DIVIDED));
+                FUZZ_HOLDS(!VIT_RECEIVER_IS_DIVIDED(cells[k].split));
             continue;
         }
         follow_receivers(p, cells[i].receiver);
