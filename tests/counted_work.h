@@ -42,6 +42,18 @@ static inline vit_statistics count(const char *pack, uint32_t device, uint32_t l
     return s;
 }
 
+/* The device host at every width, and of the first pack the first OpenCL device, too. */
+static inline void assert_same_counts_for_any_lanes(const char *const *packs, size_t pack_count) {
+    static const uint32_t ways[][2] = {{VIT_DEVICE_HOST, 1}, {VIT_DEVICE_HOST, 8}, {VIT_DEVICE_HOST, 16}, {0, 8}};
+    static vit_statistics s[2]; /* large for a stack */
+    for (size_t i = 0; i < pack_count; i++)
+        for (size_t w = 0; w < (i < 1 ? 4 : 3); w++) {
+            uint64_t hash;
+            s[w > 0] = count(packs[i], ways[w][0], ways[w][1], 0, &hash);
+            assert_equal_work(&s[0], &s[w > 0], 0, packs[i]);
+        }
+}
+
 /* A frame that was counted, and what its passes left on the device. */
 typedef struct counted {
     open_pack p;

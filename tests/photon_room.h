@@ -174,6 +174,17 @@ static inline void room_finish(room *r, uint32_t lights, uint32_t bounces) {
                             .light_count = lights};
 }
 
+/* What a finished room is to rays and photons. */
+static inline photon_scene room_scene(const room *r) {
+    return (photon_scene){.triangles = r->g.triangles,
+                          .attributes = r->g.attributes,
+                          .triangle_count = r->m.triangles,
+                          .materials = r->materials,
+                          .atlas = &r->a,
+                          .ray_offset = r->g.ray_offset,
+                          .box_pad = r->b.box_pad};
+}
+
 static inline vit_photon *room_bake(const room *r, unsigned threads, uint32_t *count) {
     vit_photon *photons = NULL;
     vit_text why = {""};

@@ -7,14 +7,7 @@ static const vit_open_info on_host = {.device = VIT_DEVICE_HOST};
 static void counts_of_baked_irradiance_are_the_same_for_any_lanes(void **state) {
     (void)state;
     static const char *const names[] = {"basis", "basis-33x47", "basis-shine"};
-    static const uint32_t ways[][2] = {{VIT_DEVICE_HOST, 1}, {VIT_DEVICE_HOST, 8}, {VIT_DEVICE_HOST, 16}, {0, 8}};
-    static vit_statistics s[2];
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        for (size_t w = 0; w < (i < 1 ? 4 : 3); w++) {
-            uint64_t hash;
-            s[w > 0] = count(names[i], ways[w][0], ways[w][1], 0, &hash);
-            assert_equal_work(&s[0], &s[w > 0], 0, names[i]);
-        }
+    assert_same_counts_for_any_lanes(names, sizeof names / sizeof names[0]);
 }
 
 /* Numbers of all vectors of a frame, a light and a receiver each. */

@@ -17,13 +17,7 @@ static void light_up(room *r, float lamp, float other) {
 }
 
 static area_lights find(const room *r, unsigned threads) {
-    const photon_scene s = {.triangles = r->g.triangles,
-                            .attributes = r->g.attributes,
-                            .triangle_count = r->m.triangles,
-                            .materials = r->materials,
-                            .atlas = &r->a,
-                            .ray_offset = r->g.ray_offset,
-                            .box_pad = r->b.box_pad};
+    const photon_scene s = room_scene(r);
     const vit_camera eye = {.eye = {0.9f, -0.9f, 0.9f}};
     area_lights e;
     vit_text why = {""};

@@ -379,51 +379,7 @@ static void graft(image *im) {
     n->child1 = VIT_LEAF_BIT | 3u << VIT_LEAF_SHIFT | 8;
 }
 
-#define X(place, name, cause, ...)                                                                                             \
-    static void spoil_##place##_##name(image *im) {                                                                            \
-        __VA_ARGS__;                                                                                                           \
-    }
-FAULTS(X)
-#undef X
-#define X(name, ...)                                                                                                           \
-    static void limit_##name(image *im) {                                                                                      \
-        __VA_ARGS__;                                                                                                           \
-    }
-LIMITS(X)
-#undef X
-
-static fault faults[] = {
-#define X(place, name, cause, ...) {FIXTURE_PHOTONS, #place, cause, spoil_##place##_##name},
-    FAULTS(X)
-#undef X
-};
-
-static fault limits[] = {
-#define X(name, ...) {FIXTURE_PHOTONS, 0, 0, limit_##name},
-    LIMITS(X)
-#undef X
-};
-
-static void any_word_may_have_any_value_without_bringing_the_loader_down(void **state) {
-    (void)state;
-    any_word_has_any_value(FIXTURE_PHOTONS, 1000);
-}
-
-int main(void) {
-    struct CMUnitTest tests[] = {
-#define X(place, name, cause, ...)                                                                                             \
-    {"a_pack_is_refused_for_" #place "_" #name, a_forged_pack_is_refused_for_its_own_reason, 0, 0, 0},
-        FAULTS(X)
-#undef X
-#define X(name, ...) {"a_pack_is_accepted_with_" #name, a_pack_just_inside_a_limit_is_accepted, 0, 0, 0},
-            LIMITS(X)
-#undef X
-                cmocka_unit_test(any_word_may_have_any_value_without_bringing_the_loader_down),
-    };
-    const size_t fault_count = sizeof faults / sizeof faults[0], limit_count = sizeof limits / sizeof limits[0];
-    for (size_t i = 0; i < fault_count; i++)
-        tests[i].initial_state = &faults[i];
-    for (size_t i = 0; i < limit_count; i++)
-        tests[fault_count + i].initial_state = &limits[i];
-    return cmocka_run_group_tests_name("forged packs", tests, NULL, NULL);
-}
+#define FORGED_KIND FIXTURE_PHOTONS
+#define FORGED_NAME "forged packs"
+#define FORGED_TESTS
+#include "forged_main.h"

@@ -60,13 +60,7 @@ static void find(guided *g, const photons_light *l, unsigned threads) {
                                      .right = {0.12f, 0.0f, -0.12f},
                                      .down = {-0.02f, -0.1f, -0.02f}};
     }
-    const photon_guiding_input in = {.scene = {.triangles = g->r->g.triangles,
-                                               .attributes = g->r->g.attributes,
-                                               .triangle_count = g->r->m.triangles,
-                                               .materials = g->r->materials,
-                                               .atlas = &g->r->a,
-                                               .ray_offset = g->r->g.ray_offset,
-                                               .box_pad = g->r->b.box_pad},
+    const photon_guiding_input in = {.scene = room_scene(g->r),
                                      .tracks = &g->t,
                                      .frames = FRAMES,
                                      .width = 16,

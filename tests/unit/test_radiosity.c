@@ -20,13 +20,7 @@ static void open_lab(lab *l, room *r, uint32_t count, uint32_t samples) {
     for (uint32_t i = 0; i < r->m.triangles; i++) /* light stays inside */
         r->g.attributes[i].material |= VIT_SIDE_DARK_BACK;
     l->r = r;
-    l->scene = (photon_scene){.triangles = r->g.triangles,
-                              .attributes = r->g.attributes,
-                              .triangle_count = r->m.triangles,
-                              .materials = r->materials,
-                              .atlas = &r->a,
-                              .ray_offset = r->g.ray_offset,
-                              .box_pad = r->g.box_pad};
+    l->scene = room_scene(r);
     assert_true(photon_rays_open(&l->scene, 1, &l->rays));
     /* A camera in the room's middle that turns: it sees every wall. */
     static vit_camera cameras[6];

@@ -22,13 +22,7 @@ static void open_lab(lab *l, room *r) {
     for (uint32_t i = 0; i < r->m.triangles; i++) /* light stays inside; what stands there has two sides */
         r->g.attributes[i].material |= r->g.attributes[i].material < WALLS ? VIT_SIDE_DARK_BACK : 0;
     l->r = r;
-    l->scene = (photon_scene){.triangles = r->g.triangles,
-                              .attributes = r->g.attributes,
-                              .triangle_count = r->m.triangles,
-                              .materials = r->materials,
-                              .atlas = &r->a,
-                              .ray_offset = r->g.ray_offset,
-                              .box_pad = r->g.box_pad};
+    l->scene = room_scene(r);
     assert_true(photon_rays_open(&l->scene, 1, &l->rays));
 }
 
