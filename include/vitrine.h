@@ -111,7 +111,7 @@ typedef struct vit_requirements {
 typedef struct vit_statistics {
     uint64_t frames;                                         /* frames rendered since vit_open */
     const char *indirect;                                    /* the effect that makes indirect light; NULL: there is none */
-    uint32_t nodes, clusters, photons, list, pairs, largest; /* last frame: see VIT_COUNTERS in records.clh */
+    uint32_t nodes, clusters, photons, list, pairs, largest; /* last frame: see VIT_COUNTERS in counters.clh */
     uint32_t slice_min, slice_max;                           /* last frame */
     uint32_t max_nodes, max_list;                            /* largest wish of any frame since vit_open */
     uint64_t dropped_samples, dropped_entries;               /* all frames: overflow of a bound */
@@ -122,7 +122,7 @@ typedef struct vit_statistics {
     uint32_t work_count;            /* kinds of work; 0 unless opened with count_work */
     const char *work_names[VIT_MAX_WORKS];
     int work_same[VIT_MAX_WORKS];                      /* 1: equal on every device; 0: compare at equal `lanes` only */
-    uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS]; /* last frame, exact; kinds: VIT_WORKS in records.clh */
+    uint64_t pass_work[VIT_MAX_PASSES][VIT_MAX_WORKS]; /* last frame, exact; kinds: VIT_WORKS in counters.clh */
 } vit_statistics;
 
 typedef struct vit vit;
@@ -169,7 +169,7 @@ uint64_t vit_hash(const void *data, size_t bytes);
 /* Reads the counters back: not for the frame loop. */
 vit_status vit_stats(vit *v, vit_statistics *out, vit_text *why);
 
-/* What the last frame's rays reached, with record_reach: VIT_REACHED_* bits (records.clh) a material, and of VIT_REACHED_MORE
+/* What the last frame's rays reached, with record_reach: VIT_REACHED_* bits (counters.clh) a material, and of VIT_REACHED_MORE
  * other things after them. VIT_USAGE: `count` is not their number, or it was not asked for. Not for the frame loop. */
 vit_status vit_reached(vit *v, uint32_t *words, uint32_t count, vit_text *why);
 

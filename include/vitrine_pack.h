@@ -15,6 +15,7 @@
 #ifndef VITRINE_PACK_H
 #define VITRINE_PACK_H
 
+#include "../kernels/counters.clh"
 #include "../kernels/records.clh"
 #include "vitrine.h"
 
