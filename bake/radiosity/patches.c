@@ -2,8 +2,8 @@
 #include "common/fail.h"
 #include "common/parallel.h"
 #include "radiosity/gather.h"
+#include "radiosity/patches_met.h"
 #include "radiosity/patches_parted.h"
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,12 +14,6 @@
 #define HIDDEN_WEIGHT 15.0   /* a cluster whose cells are all hidden from each other weighs so many times as much again */
 #define KEPT_FOR_HIDDEN 8u   /* of so many patches one is kept for clusters with hidden cells, however small they are */
 #define ALBEDO_SAMPLES 4u    /* places of a cell whose texels are looked at */
-
-#define SEEN_WORTH 0.0625f /* of a cell that a camera sees, a path: it may give light, too */
-#define PATHS_PER_PATCH 64u
-#define PATHS_LEAST 262144u
-#define PATHS_MOST 1048576u
-#define PATH_HITS 8u /* at most */
 
 typedef struct cluster {
     uint32_t first, count; /* of order[] */
@@ -47,9 +41,8 @@ typedef struct clustering {
     uint32_t *order;
     float *at; /* 6 a cell: place, m, and normal times `bend` */
     float *area;
-    patch_point *met; /* by these paths */
-    size_t met_count;
-    float *worth; /* a cell: paths from the cameras that met it; those that it gives light to count in full */
+    patches_met met;
+    float *worth; /* a cell: patches_met_worth() */
     float bend;
     cluster *clusters; /* a heap: the worst first */
     fork *forks;
@@ -73,73 +66,14 @@ static bool is_in(const patches_input *in, uint32_t side) {
     return !side_is_dark(in->geometry, side) && reflects(in->rays->s, side / 2) && side_area(in->geometry, side) > 0.0f;
 }
 
-/* Paths from the cameras, matt reflections as they come by chance: the cells that each meets. */
-typedef struct pilot {
-    const clustering *k;
-    uint32_t paths;
-    patch_point *met; /* PATH_HITS per path; side VIT_NONE: no more */
-} pilot;
-
-static void pilot_path(void *user, uint32_t path) {
-    const pilot *w = user;
-    const patches_input *in = w->k->in;
-    const photon_scene *s = in->rays->s;
-    const vit_camera *c = in->tracks->cameras + pcg(path) % in->frames;
-    uint32_t chance = pcg(path ^ 0x5bd1e995u);
-    patch_point *met = w->met + (size_t)PATH_HITS * path;
-    const float x = lattice_u(path, 0) * (float)in->width, y = lattice_v(path, 0) * (float)in->height;
-    vec3 o = vec3_load(c->eye),
-         d = vec3_unit(vec3_along(vec3_along(vec3_load(c->corner), vec3_load(c->right), x), vec3_load(c->down), y));
-    for (uint32_t hit = 0; hit < PATH_HITS; hit++)
-        met[hit] = (patch_point){.side = VIT_NONE};
-    for (uint32_t hit = 0; hit < PATH_HITS; hit++) {
-        const gather_hit at = gather(in->rays, in->geometry, o, d, chance);
-        if (at.side == VIT_NONE)
-            return;
-        met[hit] = (patch_point){at.side, at.b1, at.b2};
-        const float *albedo = s->materials[s->attributes[at.side / 2].material & VIT_MATERIAL_INDEX].albedo;
-        chance = pcg(chance);
-        if (unit_float(chance) > (albedo[0] + albedo[1] + albedo[2]) / 3.0f)
-            return;
-        chance = pcg(chance);
-        const float u = unit_float(chance);
-        chance = pcg(chance);
-        const vec3 face = side_face(in->geometry, at.side);
-        d = vec3_cosine(face, u, unit_float(chance));
-        o = vec3_along(side_place(in->geometry, at.side, at.b1, at.b2), face, s->ray_offset);
-    }
-}
-
-/* Hits but a path's first: what a camera sees itself gets light, what is met from there gives it. */
-static bool is_looked_for(size_t hit, patch_point met) {
-    return hit % PATH_HITS > 0 && met.side != VIT_NONE;
-}
-
-/* False: out of memory. */
-static bool find_worth(clustering *k) {
-    const uint64_t wanted = (uint64_t)k->in->count * PATHS_PER_PATCH;
-    pilot w = {.k = k, .paths = wanted < PATHS_LEAST ? PATHS_LEAST : wanted < PATHS_MOST ? (uint32_t)wanted : PATHS_MOST};
-    k->worth = calloc(k->p->cells.count + 1u, sizeof *k->worth);
-    w.met = malloc((size_t)PATH_HITS * w.paths * sizeof *w.met);
-    if (k->worth && w.met) {
-        parallel_for(k->in->threads, w.paths, pilot_path, &w);
-        for (size_t i = 0; i < (size_t)PATH_HITS * w.paths; i++)
-            if (w.met[i].side != VIT_NONE)
-                k->worth[cells_at(&k->p->cells, w.met[i].side, w.met[i].b1, w.met[i].b2)] +=
-                    is_looked_for(i, w.met[i]) ? 1.0f : SEEN_WORTH;
-    }
-    k->met = w.met;
-    k->met_count = (size_t)PATH_HITS * w.paths;
-    return k->worth && w.met;
-}
-
 /* Cells of sides that belong to patches, in order[], with places and normals. False: out of memory. */
 static bool find_cells(clustering *k) {
     const cells *c = &k->p->cells;
     k->order = malloc((c->count + 1u) * sizeof *k->order);
     k->at = malloc((c->count + 1u) * 6u * sizeof *k->at);
     k->area = malloc((c->count + 1u) * sizeof *k->area);
-    if (!k->order || !k->at || !k->area)
+    k->worth = patches_met_worth(&k->met, c);
+    if (!k->order || !k->at || !k->area || !k->worth)
         return false;
     uint32_t count = 0;
     for (uint32_t i = 0; i < c->count; i++) {
@@ -410,25 +344,6 @@ static void finish(void *user, uint32_t item) {
         out->albedo[d] = float_min((float)(albedo[d] / sum), VIT_MAX_ALBEDO);
 }
 
-/* Keeps some of the places that paths have met in each patch: a reservoir of them all (Vitter 1985), the same whatever the
- * threads. */
-static void keep_points(const clustering *k) {
-    patch_set *p = k->p;
-    for (size_t i = 0; i < k->met_count; i++) {
-        const patch_point m = k->met[i];
-        const uint32_t patch = is_looked_for(i, m) ? patches_at(p, m.side, m.b1, m.b2) : VIT_NONE;
-        if (patch == VIT_NONE)
-            continue;
-        const uint32_t before = p->point_count[patch]++;
-        const uint32_t at = before < PATCHES_POINTS ? before : pcg((uint32_t)i) % (before + 1);
-        if (at < PATCHES_POINTS)
-            p->points[(size_t)patch * PATCHES_POINTS + at] = m;
-    }
-    for (uint32_t i = 0; i < p->count; i++)
-        if (p->point_count[i] > PATCHES_POINTS)
-            p->point_count[i] = PATCHES_POINTS;
-}
-
 /* From one cluster of all cells to as many as are wanted. */
 static void split_all(clustering *k) {
     k->count = 1;
@@ -458,7 +373,8 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
     out->patch_of = malloc((out->cells.count + 1u) * sizeof *out->patch_of);
     k.clusters = calloc(in->count, sizeof *k.clusters);
     k.forks = calloc(in->count, sizeof *k.forks);
-    bool fine = out->patch_of && k.clusters && k.forks && patches_find_parts(in, edge, out) && find_worth(&k) && find_cells(&k);
+    bool fine = out->patch_of && k.clusters && k.forks && patches_find_parts(in, edge, out) && patches_find_met(in, &k.met) &&
+                find_cells(&k);
     if (fine && k.clusters[0].count > 0)
         split_all(&k);
     const uint32_t used = fine ? (k.count ? out->cells.count : 0) : 0;
@@ -486,7 +402,7 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
             if (out->patch_of[i] == VIT_NONE && is_in(in, out->cells.side_of[i]))
                 out->patch_of[i] = place(&k, i);
         fine = patches_place_parts(in, edge, out);
-        keep_points(&k);
+        patches_keep_points(&k.met, out);
     }
     if (!fine) {
         status = bake_fail(why, VIT_FAILED, "patches: out of memory");
@@ -496,7 +412,7 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
     free(k.area);
     free(k.worth);
     free(k.forks);
-    free(k.met);
+    patches_met_free(&k.met);
     free(k.clusters);
     if (status != VIT_OK)
         patches_free(out);
