@@ -14,8 +14,8 @@ typedef struct patches_met {
 bool patches_find_met(const patches_input *in, patches_met *out);
 void patches_met_free(patches_met *m);
 
-/* A cell: how many paths met it; one that a camera sees itself counts for little, as it need not give light. The caller's; NULL:
- * out of memory. */
+/* A cell: how many paths met it; one that a camera sees itself counts for little, as it need not give light. The caller's;
+ * NULL: out of memory. */
 float *patches_met_worth(const patches_met *m, const cells *c);
 /* Fills in points and point_count, which is 0, once cells have their patches: a reservoir of all places (Vitter 1985), the same
  * whatever the threads. */

@@ -3,6 +3,7 @@
  * each side, so that a floor which is a mirror sends so much on. What is asked for is made, whatever the rules say;
  * and where the baker's look at its picture finds the basis wrong and photons less so, photons are taken after all. */
 #include "scene_lab.h"
+#include "pack_sections.h"
 #include <math.h>
 
 #define STILL "{ position = [0.0, 0.0, 0.0]; power = [10.0, 10.0, 10.0]; }"
@@ -106,14 +107,27 @@ static void irradiance_has_a_bound_in_bytes(void **state) {
     assert_non_null(strstr(line, "basis_bytes = 1e+06"));
 }
 
+/* Hits of a path that the pack counts. */
+static uint32_t bounces_of(scene_lab *l) {
+    size_t size;
+    void *bytes = read_file(scene_lab_path(l, "scene.vit"), &size);
+    const uint32_t bounces = ((const vit_scene *)pack_sections_of(bytes).data[VIT_SECTION_META])->bounces;
+    free(bytes);
+    return bounces;
+}
+
+/* With quality stated, too, and then all reflections count where they cost a frame nothing, but for what the scene says. */
 static void what_is_asked_for_is_made(void **state) {
-    static const char *const makers[] = {"photons", "basis"};
+    static const char *const makers[] = {"photons", "basis", "radiosity", "radiosity"};
+    static const uint32_t bounces[] = {4, 32, 32, 3};
     scene_lab *l = *state;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 4; i++) {
         char line[128];
-        write_scene(l, i ? MIRROR(0.6) : "", 2, STILL, "");
-        (void)snprintf(line, sizeof line, "--indirect %s", makers[i]);
+        write_scene(l, i ? MIRROR(0.6) : "", 2, i < 2 ? STILL : STILL ", { time = 1.0; position = [0.1, 0.0, 0.0]; }",
+                    i < 3 ? "quality: { tile = 16; };\n" : "quality: { bounces = 3; };\n");
+        (void)snprintf(line, sizeof line, "--quality stated --patches 64 --indirect %s", makers[i]);
         bake(l, line);
+        assert_int_equal(bounces_of(l), bounces[i]);
         assert_false(scene_lab_said(l, "indirect = \"auto\""));
         (void)snprintf(line, sizeof line, "%s --device host --report --frames 0", scene_lab_path(l, "scene.vit"));
         scene_lab_run(l, "vitrine-play", line);
