@@ -5,6 +5,7 @@ config ?= release
 OPENCL ?= 1
 B := build/$(config)$(if $(filter 0,$(OPENCL)),-no-opencl)
 CC ?= cc
+CXX ?= c++
 prefix ?= /usr/local
 
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Werror
@@ -19,6 +20,7 @@ else ifeq ($(config),sanitize)
 OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else ifeq ($(config),fuzz)
 CC := clang
+CXX := clang++
 OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else ifeq ($(config),coverage)
 OPT := -O1 -g --coverage
@@ -36,22 +38,25 @@ KERNELS := ../include/vitrine_frame.h records.clh counters.clh strict.clh lanes.
 
 RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)
-BAKE := $(filter-out bake/scenes/%,$(wildcard bake/*.c bake/*/*.c))
+BAKE := $(filter-out bake/scenes/%,$(wildcard bake/*.c bake/*/*.c bake/*/*/*.c))
 SCENES := $(wildcard bake/scenes/*.c)
 TESTS := $(wildcard tests/unit/*.c tests/golden/*.c tests/numeric/*.c tests/fuzz/*.c)
 BENCH := $(wildcard tests/bench/*.c)
 
+# libdraco speaks C++ alone.
+BAKE_CXX := $(wildcard bake/*/*/*.cc)
+
 obj = $(patsubst %.c,$(B)/%.o,$(1))
 # All of vitrine-bake and vitrine-cost but their mains.
 BAKE_PARTS := $(filter-out bake/main.c bake/cost/main.c,$(BAKE))
-BAKE_OBJECTS := $(call obj,$(BAKE_PARTS)) $(B)/report_files.o
+BAKE_OBJECTS := $(call obj,$(BAKE_PARTS)) $(BAKE_CXX:%.cc=$(B)/%.o) $(B)/report_files.o
 # Libraries. Embree 3 or 4, whichever is installed.
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
 LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 # Open MPI, if it is installed, spreads references over machines (bake/reference/spread.h).
 LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
-LIBS_BAKE := -lembree$(EMBREE) -lassimp -lconfig -lpng -lpthread -lm
+LIBS_BAKE := -lembree$(EMBREE) -lassimp -ljansson -ldraco -lmeshoptimizer -lwebp -lconfig -lpng -lstdc++ -lpthread -lm
 
 # The device `host`: runtime/host/kernels.c once for each instruction set, best first, and each number of lanes.
 HOST_LANES := 1 8 16
@@ -125,6 +130,9 @@ $(B)/kernel_sources.o: $(B)/kernel_sources.c
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
+$(B)/%.o: %.cc
+	@mkdir -p $(@D)
+	$(CXX) -std=c++17 -Wall -Wextra -Werror -ffp-contract=off -MMD -MP -Ibake $(OPT) $(CXXFLAGS) -c $< -o $@
 
 $(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(HOST_OBJECTS) $(if $(filter 0,$(OPENCL)),,$(B)/kernel_sources.o)
 	@rm -f $@

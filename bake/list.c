@@ -1,5 +1,6 @@
 #include "list.h"
 #include "common/fail.h"
+#include "import/import_format.h"
 #include "list_parts.h"
 #include "vitrine_pack.h"
 #include <inttypes.h>
@@ -96,6 +97,20 @@ static void print_cameras(const model *m, FILE *to) {
     }
 }
 
+/* Who reads each file, and what that reader never does. */
+static void print_formats(const list *l, FILE *to) {
+    (void)fprintf(to, "\nformats %d\n", l->model.format_count);
+    for (int i = 0; i < l->model.format_count; i++) {
+        const import_format *f = import_formats[l->model.formats[i]];
+        (void)fputs("  ", to);
+        print_name(to, l->s->meshes[i].file);
+        (void)fprintf(to, " is read as %s, without", f->name);
+        for (size_t k = 0; f->cannot[k]; k++)
+            (void)fprintf(to, "%s %s", k ? "," : "", f->cannot[k]);
+        (void)fputc('\n', to);
+    }
+}
+
 void list_for_people(const list *l, FILE *to) {
     const model *m = &l->model;
     (void)fprintf(to, "%s: %u triangles, %u vertices, box ", l->s->path, m->triangles, m->vertices);
@@ -122,9 +137,10 @@ void list_for_people(const list *l, FILE *to) {
     }
     print_lights(m, to);
     print_cameras(m, to);
-    (void)fprintf(to, "\nextensions %zu\n", l->extension_count);
-    for (size_t i = 0; i < l->extension_count; i++) {
-        const gltf_extension *e = &l->extensions[i].extension;
+    print_formats(l, to);
+    (void)fprintf(to, "\nextensions %d\n", m->extension_count);
+    for (int i = 0; i < m->extension_count; i++) {
+        const model_extension *e = &m->extensions[i];
         (void)fputs("  ", to);
         print_name(to, e->name);
         (void)fprintf(to, " %s, %s\n", e->required ? "required" : "used", e->read ? "read" : "not read");
@@ -151,26 +167,9 @@ static void remember(void *user, const char *line) {
         l->failed = true;
 }
 
-static void add_extensions(list *l, const char *file) {
-    gltf_extension found[GLTF_EXTENSIONS];
-    const int count = gltf_extensions(file, found);
-    if (count == 0)
-        return;
-    list_extension *grown = realloc(l->extensions, (l->extension_count + (size_t)count) * sizeof *grown);
-    if (!grown) {
-        l->failed = true;
-        return;
-    }
-    l->extensions = grown;
-    for (int k = 0; k < count; k++)
-        grown[l->extension_count++] = (list_extension){file, found[k]};
-}
-
 vit_status list_print(const scene *s, bool strict, bool json, FILE *to, vit_text *why) {
     list l = {.s = s};
-    vit_status status = model_import(s, strict, remember, &l, &l.model, why);
-    for (int i = 0; status == VIT_OK && i < s->mesh_count; i++)
-        add_extensions(&l, s->meshes[i].file);
+    vit_status status = model_import(s, strict ? MODEL_STRICT : MODEL_LISTS, remember, &l, &l.model, why);
     if (status == VIT_OK && l.failed) {
         status = bake_fail(why, VIT_FAILED, "out of memory");
     }
@@ -179,7 +178,6 @@ vit_status list_print(const scene *s, bool strict, bool json, FILE *to, vit_text
     for (size_t i = 0; i < l.not_done_count; i++)
         free(l.not_done[i]);
     free(l.not_done);
-    free(l.extensions);
     model_free(&l.model);
     return status;
 }

@@ -1,4 +1,5 @@
 #include "common/json.h"
+#include "import/import_format.h"
 #include "list_parts.h"
 #include <inttypes.h>
 
@@ -133,14 +134,32 @@ static void textures(const model *m, FILE *to) {
     (void)fputs("]", to);
 }
 
+static void formats(const list *l, FILE *to) {
+    open_list(to, "formats");
+    for (int i = 0; i < l->model.format_count; i++) {
+        const import_format *f = import_formats[l->model.formats[i]];
+        next(to, (size_t)i);
+        text(to, "file", l->s->meshes[i].file);
+        (void)fputs(", ", to);
+        text(to, "format", f->name);
+        (void)fputs(", \"without\": [", to);
+        for (size_t k = 0; f->cannot[k]; k++) {
+            (void)fputs(k ? ", " : "", to);
+            text_json(to, f->cannot[k]);
+        }
+        (void)fputs("]}", to);
+    }
+    (void)fputs("]", to);
+}
+
 static void extensions(const list *l, FILE *to) {
     open_list(to, "extensions");
-    for (size_t i = 0; i < l->extension_count; i++) {
-        const gltf_extension *e = &l->extensions[i].extension;
-        next(to, i);
+    for (int i = 0; i < l->model.extension_count; i++) {
+        const model_extension *e = &l->model.extensions[i];
+        next(to, (size_t)i);
         text(to, "name", e->name);
         (void)fputs(", ", to);
-        text(to, "file", l->extensions[i].file);
+        text(to, "file", l->s->meshes[e->file].file);
         (void)fprintf(to, ", \"required\": %s, \"read\": %s}", e->required ? "true" : "false", e->read ? "true" : "false");
     }
     (void)fputs("]", to);
@@ -162,6 +181,7 @@ void list_for_programs(const list *l, FILE *to) {
     textures(m, to);
     lights(m, to);
     cameras(m, to);
+    formats(l, to);
     extensions(l, to);
     open_list(to, "not_done");
     for (size_t i = 0; i < l->not_done_count; i++) {

@@ -2,20 +2,12 @@
 #ifndef VIT_BAKE_LIST_PARTS_H
 #define VIT_BAKE_LIST_PARTS_H
 
-#include "import/gltf_extensions.h"
 #include "import/model.h"
 #include <stdio.h>
-
-typedef struct list_extension {
-    const char *file;
-    gltf_extension extension;
-} list_extension;
 
 typedef struct list {
     const scene *s;
     model model;
-    list_extension *extensions;
-    size_t extension_count;
     char **not_done; /* the import's warnings */
     size_t not_done_count;
     bool failed; /* out of memory */

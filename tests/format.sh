@@ -3,7 +3,7 @@
 # differ. Versions of clang-format break lines in different places; the one that counts is Debian 12's, and others look at the lengths of
 # lines alone. stb is not ours.
 cd "$(dirname "$0")/.." || exit 2
-files=$(git ls-files '*.c' '*.h' '*.cl' '*.clh' | grep -v '/stb_image\.c$')
+files=$(git ls-files '*.c' '*.cc' '*.h' '*.cl' '*.clh' | grep -v '/stb_image\.c$')
 [ -n "$files" ] || exit 2
 columns=$(sed -n 's/^ColumnLimit: //p' .clang-format)
 version=$(clang-format --version | sed -n 's/.*version \([0-9]*\)\..*/\1/p')

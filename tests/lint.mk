@@ -29,4 +29,4 @@ build/lint/%.ok: %.c .clang-tidy
 	@mkdir -p $(@D)
 	@clang-tidy --quiet $< -- -std=c11 $(LINT_FLAGS) 2>/dev/null
 	@touch $@
-$(LINT_STAMPS): $(wildcard include/*.h kernels/*.clh runtime/*.h runtime/play/*.h bake/*.h bake/*/*.h)
+$(LINT_STAMPS): $(wildcard include/*.h kernels/*.clh runtime/*.h runtime/play/*.h bake/*.h bake/*/*.h bake/*/*/*.h)

@@ -1,14 +1,11 @@
 #include "common/file_trouble.h"
-#include "import/gltf_extensions.h"
 #include "import/importer.h"
 #include "common/names.h"
-#include <assimp/cimport.h>
 #include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* ---- messages and memory ---- */
 
@@ -18,29 +15,48 @@ static void one_line(char *text) {
             *text = ' ';
 }
 
-bool import_fail(importer *im, const char *format, ...) {
-    va_list args;
-    va_start(args, format);
+static void fail_by(importer *im, const char *format, va_list args) {
     const int used = snprintf(im->why->text, sizeof im->why->text, "%.200s: ", im->file);
     if (used >= 0)
         (void)vsnprintf(im->why->text + used, sizeof im->why->text - (size_t)used, format, args);
-    va_end(args);
     one_line(im->why->text);
-    return false;
 }
 
-void import_warn(importer *im, const char *format, ...) {
+static void warn_by(importer *im, const char *format, va_list args) {
     char line[1024];
-    va_list args;
-    va_start(args, format);
     const int used = snprintf(line, sizeof line, "%.400s: ", im->file);
     if (used >= 0)
         (void)vsnprintf(line + used, sizeof line - (size_t)used, format, args);
-    va_end(args);
     one_line(line);
     im->m->warnings++;
     if (im->warn)
         im->warn(im->user, line);
+}
+
+bool import_fail(importer *im, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    fail_by(im, format, args);
+    va_end(args);
+    return false;
+}
+
+void import_warn(importer *im, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    warn_by(im, format, args);
+    va_end(args);
+}
+
+bool import_not_done(importer *im, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    if (im->rigour == MODEL_STRICT)
+        fail_by(im, format, args);
+    else
+        warn_by(im, format, args);
+    va_end(args);
+    return im->rigour != MODEL_STRICT;
 }
 
 bool import_room(importer *im, void *block, size_t *room, size_t count, size_t size) {
@@ -61,48 +77,6 @@ bool import_room(importer *im, void *block, size_t *room, size_t count, size_t s
 
 /* ---- one file ---- */
 
-static void multiply(const double a[12], const struct aiMatrix4x4 *b, double out[12]) {
-    const float rows[12] = {b->a1, b->a2, b->a3, b->a4, b->b1, b->b2, b->b3, b->b4, b->c1, b->c2, b->c3, b->c4};
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 4; c++) {
-            out[4 * r + c] = c == 3 ? a[4 * r + 3] : 0.0;
-            for (int k = 0; k < 3; k++)
-                out[4 * r + c] += a[4 * r + k] * (double)rows[4 * k + c];
-        }
-}
-
-static bool place_mesh(importer *im, unsigned index, const double world[12]) {
-    const uint32_t before = im->m->triangles;
-    const bool fine = import_mesh(im, index, world);
-    im->placed[index].places++;
-    im->placed[index].triangles += im->m->triangles - before;
-    return fine;
-}
-
-static bool add_node(importer *im, const struct aiNode *node, const double parent[12], int depth) {
-    double world[12];
-    if (depth > IMPORT_DEPTH)
-        return import_fail(im, "nodes are nested deeper than %d", IMPORT_DEPTH);
-    multiply(parent, &node->mTransformation, world);
-    for (unsigned i = 0; i < node->mNumMeshes; i++) {
-        if (node->mMeshes[i] >= im->ai->mNumMeshes)
-            return import_fail(im, "node '%.100s' has mesh %u of %u", node->mName.data, node->mMeshes[i], im->ai->mNumMeshes);
-        if (!place_mesh(im, node->mMeshes[i], world))
-            return false;
-    }
-    if (!import_node_camera(im, node, world) || !import_node_light(im, node, world))
-        return false;
-    for (unsigned i = 0; i < node->mNumChildren; i++)
-        if (!add_node(im, node->mChildren[i], world, depth + 1))
-            return false;
-    return true;
-}
-
-bool import_has_suffix(const char *file, const char *suffix) {
-    const size_t n = strlen(file), k = strlen(suffix);
-    return n >= k && !strcasecmp(file + n - k, suffix);
-}
-
 /* In one line why nothing is left, if that is all there was to read. */
 static bool refuse_empty(importer *im) {
     if (im->not_finite)
@@ -119,53 +93,8 @@ static bool refuse_empty(importer *im) {
     return import_fail(im, "has no triangle");
 }
 
-/* Meshes whose nodes Assimp has lost stand where the root does: in RAW files that is where they belong. */
-static bool add_strays(importer *im, const scene_mesh *mesh) {
-    unsigned strays = 0;
-    double world[12];
-    multiply(mesh->transform, &im->ai->mRootNode->mTransformation, world);
-    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
-        if (import_is_stray(im, i)) {
-            strays++;
-            if (!place_mesh(im, i, world))
-                return false;
-        }
-    if (strays > 0 && !import_has_suffix(im->file, ".raw"))
-        import_warn(im, "the mesh reader has lost the places of %u meshes; they stand at the origin", strays);
-    return true;
-}
-
-/* The model's list of meshes. */
-static bool list_meshes(importer *im) {
-    model *m = im->m;
-    size_t room = (size_t)m->mesh_count, more = 0;
-    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
-        more += im->placed[i].places > 0;
-    if (more > 0 && !import_room(im, &m->meshes, &room, (size_t)m->mesh_count + more, sizeof *m->meshes))
-        return false;
-    for (unsigned i = 0; i < im->ai->mNumMeshes; i++)
-        if (im->placed[i].places > 0) {
-            model_mesh *to = &m->meshes[m->mesh_count++];
-            *to = im->placed[i];
-            to->file = im->file_index;
-            (void)snprintf(to->name, sizeof to->name, "%.*s", SCENE_NAME - 1, im->ai->mMeshes[i]->mName.data);
-        }
-    return true;
-}
-
-static bool add_scene(importer *im, const scene_mesh *mesh) {
-    const uint32_t before = im->m->triangles;
-    if (!im->ai->mRootNode)
-        return import_fail(im, "has no nodes");
-    im->placed = calloc((size_t)im->ai->mNumMeshes + 1, sizeof *im->placed);
-    if (!im->placed)
-        return import_fail(im, "out of memory");
-    const bool placed = import_transparency(im) && add_node(im, im->ai->mRootNode, mesh->transform, 0) &&
-                        add_strays(im, mesh) && list_meshes(im);
-    free(im->placed);
-    im->placed = NULL;
-    if (!placed)
-        return false;
+/* What became of the triangles that the reader has placed. */
+static bool settle_file(importer *im, uint32_t before) {
     im->m->not_finite += im->not_finite;
     if (im->m->triangles == before && im->s->mesh_count == 1)
         return refuse_empty(im);
@@ -190,56 +119,65 @@ static bool add_scene(importer *im, const scene_mesh *mesh) {
     return true;
 }
 
-/* What Assimp says, in one line. */
-static bool fail_by_assimp(importer *im) {
-    const char *text = aiGetErrorString();
-    if (text && strstr(text, "bad_alloc"))
-        return import_fail(im, "takes more memory than a file of its size is given");
-    return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
-}
-
 static bool check_there(importer *im) {
     const char *trouble = file_trouble(im->file);
     return trouble ? import_fail(im, "%s", trouble) : true;
 }
 
-static bool has_materials(importer *im) {
-    if (!im->no_materials[0])
-        return true;
-    if (im->strict)
-        return import_fail(im, "its material file '%.100s' is not there", im->no_materials);
-    import_warn(im, "its material file '%.100s' is not there", im->no_materials);
+/* The model's list of meshes: those that a node puts somewhere. */
+static bool list_meshes(importer *im) {
+    model *m = im->m;
+    size_t room = (size_t)m->mesh_count, more = 0;
+    for (size_t i = 0; i < im->placed_count; i++)
+        more += im->placed[i].places > 0;
+    if (more > 0 && !import_room(im, &m->meshes, &room, (size_t)m->mesh_count + more, sizeof *m->meshes))
+        return false;
+    for (size_t i = 0; i < im->placed_count; i++)
+        if (im->placed[i].places > 0) {
+            im->placed[i].file = im->file_index;
+            m->meshes[m->mesh_count++] = im->placed[i];
+        }
+    return true;
+}
+
+/* Enough of it to know its format. */
+enum { HEAD_BYTES = 4096 };
+
+static bool choose_format(importer *im) {
+    uint8_t head[HEAD_BYTES];
+    FILE *file = fopen(im->file, "rb");
+    if (!file)
+        return import_fail(im, "cannot be read");
+    const size_t size = fread(head, 1, sizeof head, file);
+    (void)fclose(file);
+    im->format = import_format_of(im->file, head, size);
+    return true;
+}
+
+/* Which reader it was that read the file; it may have handed it on. */
+static bool note_format(importer *im) {
+    model *m = im->m;
+    size_t room = (size_t)m->format_count;
+    uint8_t format = 0;
+    while (import_formats[format] != im->format)
+        format++;
+    if (!import_room(im, &m->formats, &room, room + 1, sizeof *m->formats))
+        return false;
+    m->formats[m->format_count++] = format;
     return true;
 }
 
 bool import_file(importer *im, const scene_mesh *mesh) {
-    struct aiFileIO io = import_file_io(im);
-    /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
-    im->ai = aiImportFileEx(mesh->file, 0, &io);
-    if (!im->ai)
-        return fail_by_assimp(im);
-    const bool fine = has_materials(im) && import_mend_tree(im) && import_triangulate(im) && add_scene(im, mesh);
-    import_free_cuts(im);
-    if (im->ai && !im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
-        aiReleaseImport(im->ai);
+    const uint32_t before = im->m->triangles;
+    const bool fine =
+        choose_format(im) && im->format->read(im, mesh) && list_meshes(im) && note_format(im) && settle_file(im, before);
+    free(im->placed);
+    im->placed = NULL;
+    im->placed_count = 0;
     return fine;
 }
 
 /* ---- all files ---- */
-
-/* What a glTF file cannot be understood without, by its own word. */
-static bool check_required(importer *im) {
-    gltf_extension found[GLTF_EXTENSIONS];
-    const int count = im->gltf ? gltf_extensions(im->file, found) : 0;
-    for (int i = 0; i < count; i++) {
-        if (!found[i].required || found[i].read)
-            continue;
-        if (im->strict)
-            return import_fail(im, "extension '%s' is required and not read", found[i].name);
-        import_warn(im, "extension '%s' is required and not read", found[i].name);
-    }
-    return true;
-}
 
 static void find_box(model *m) {
     for (int k = 0; k < 3; k++) {
@@ -254,21 +192,20 @@ static void find_box(model *m) {
 
 static void next_file(importer *im, const char *file) {
     free(im->uses);
+    free(im->means);
     im->uses = NULL;
     im->use_count = im->use_room = 0;
+    im->means = NULL;
+    im->mean_count = im->mean_room = 0;
     im->bad_index = im->not_finite = im->clear = im->bad_polygon = im->too_far = 0;
-    im->inverse = false;
     im->shown = SHOWN_AS_SAID;
     im->farthest = 0.0;
     im->allowed = im->allowed_texels = 0;
-    im->no_materials[0] = '\0';
-    im->warned_colors = im->warned_morph = im->warned_bones = false;
-    free(im->means);
-    im->means = NULL;
-    im->mean_count = im->mean_room = 0;
-    im->ai = NULL;
+    im->warned_colors = im->states_units = false;
+    im->format = NULL;
+    im->reader = NULL;
+    im->embedded = 0;
     im->file = file;
-    im->gltf = import_has_suffix(file, ".gltf") || import_has_suffix(file, ".glb");
 }
 
 static const char *material_name(const void *list, int index) {
@@ -278,7 +215,7 @@ static const char *material_name(const void *list, int index) {
 static bool unknown_material(importer *im, const scene_material *o) {
     char names[NAMES_TEXT];
     names_offer(o->name, material_name, im->m, im->m->material_count, names);
-    if (im->strict)
+    if (im->rigour == MODEL_STRICT)
         return import_fail(im, "line %d: no mesh uses a material '%.60s'%s", o->line, o->name, names);
     import_warn(im, "line %d: no mesh uses a material '%.60s'%s", o->line, o->name, names);
     return true;
@@ -286,17 +223,17 @@ static bool unknown_material(importer *im, const scene_material *o) {
 
 typedef bool read_fn(importer *im, const scene_mesh *mesh);
 
-static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, void *user, read_fn *read, model *out,
+static vit_status import_all(const scene *s, model_rigour rigour, model_warn_fn *warn, void *user, read_fn *read, model *out,
                              vit_text *why) {
     importer im = {
-        .s = s, .m = out, .strict = strict, .warn = warn, .user = user, .why = why, .file = s->path, .status = VIT_BAD_INPUT};
+        .s = s, .m = out, .rigour = rigour, .warn = warn, .user = user, .why = why, .file = s->path, .status = VIT_BAD_INPUT};
     *out = (model){0};
     im.override_used = calloc((size_t)s->material_count + 1, sizeof *im.override_used);
     bool fine = im.override_used ? true : import_fail(&im, "out of memory");
     for (int i = 0; fine && i < s->mesh_count; i++) {
         next_file(&im, s->meshes[i].file);
         im.file_index = (uint32_t)i;
-        fine = check_there(&im) && check_required(&im) && import_check_ply(&im) && read(&im, &s->meshes[i]);
+        fine = check_there(&im) && read(&im, &s->meshes[i]);
     }
     next_file(&im, s->path);
     for (int i = 0; fine && i < s->material_count; i++)
@@ -313,12 +250,12 @@ static vit_status import_all(const scene *s, bool strict, model_warn_fn *warn, v
     return im.status;
 }
 
-vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
-    return import_all(s, strict, warn, user, import_in_child, out, why);
+vit_status model_import(const scene *s, model_rigour rigour, model_warn_fn *warn, void *user, model *out, vit_text *why) {
+    return import_all(s, rigour, warn, user, import_in_child, out, why);
 }
 
-vit_status model_import_here(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why) {
-    return import_all(s, strict, warn, user, import_file, out, why);
+vit_status model_import_here(const scene *s, model_rigour rigour, model_warn_fn *warn, void *user, model *out, vit_text *why) {
+    return import_all(s, rigour, warn, user, import_file, out, why);
 }
 
 void model_free(model *m) {
@@ -334,6 +271,8 @@ void model_free(model *m) {
     free(m->cameras);
     free(m->lights);
     free(m->meshes);
+    free(m->extensions);
+    free(m->formats);
     inputs_free(&m->files);
     *m = (model){0};
 }

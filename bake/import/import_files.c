@@ -1,106 +1,86 @@
-/* What of the disk Assimp gets to see: plain files, to be read. Each that it opens is noted, and earns time and memory. */
+/* What of the disk a mesh file refers to. Each file that is opened is noted, and earns time and memory. */
+#include "import/image_file.h"
 #include "import/importer.h"
-#include <assimp/cfileio.h>
+#include <ctype.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static size_t read_some(struct aiFile *f, char *to, size_t size, size_t count) {
-    return size ? fread(to, size, count, (FILE *)(void *)f->UserData) : 0;
-}
-
-static size_t write_nothing(struct aiFile *f, const char *from, size_t size, size_t count) {
-    (void)f;
-    (void)from;
-    (void)size;
-    (void)count;
-    return 0;
-}
-
-static size_t tell(struct aiFile *f) {
-    const long at = ftell((FILE *)(void *)f->UserData);
-    return at < 0 ? 0 : (size_t)at;
-}
-
-static size_t size_of(struct aiFile *f) {
-    struct stat s;
-    return fstat(fileno((FILE *)(void *)f->UserData), &s) == 0 && s.st_size > 0 ? (size_t)s.st_size : 0;
-}
-
-static enum aiReturn seek(struct aiFile *f, size_t offset, enum aiOrigin origin) {
-    const int from = origin == aiOrigin_SET ? SEEK_SET : origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END;
-    return fseek((FILE *)(void *)f->UserData, (long)offset, from) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
-}
-
-static void flush_nothing(struct aiFile *f) {
-    (void)f;
-}
-
-/* A pipe without a writer must not be waited for, and a device has no end. */
-static FILE *open_plain(const char *path, size_t *size) {
-    struct stat s;
-    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    FILE *file = fd >= 0 && fstat(fd, &s) == 0 && S_ISREG(s.st_mode) ? fdopen(fd, "rb") : NULL;
-    if (!file && fd >= 0)
-        (void)close(fd);
-    *size = file ? (size_t)s.st_size : 0;
-    return file;
-}
 
 void import_note_file(importer *im, const char *path, size_t bytes) {
     inputs_add(&im->m->files, path);
     import_allow(im, bytes);
 }
 
-static const char *last_part(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+static bool is_file(const char *path) {
+    struct stat st;
+    return stat(path, &st) == 0 && S_ISREG(st.st_mode) && st.st_size <= IMAGE_FILE_MOST;
 }
 
-/* Assimp goes on without a material file, without a word: the first that is nowhere is remembered. It may be tried for in more
- * places. */
-static void note_materials(importer *im, const char *path, bool there) {
-    if (!import_has_suffix(path, ".mtl"))
-        return;
-    if (there && strcmp(im->no_materials, last_part(path)) == 0)
-        im->no_materials[0] = '\0';
-    else if (!there && !im->no_materials[0])
-        (void)snprintf(im->no_materials, sizeof im->no_materials, "%s", last_part(path));
+static int hex(char c) {
+    return isdigit((unsigned char)c) ? c - '0' : isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
 }
 
-static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
-    importer *im = (importer *)(void *)io->UserData;
-    size_t bytes;
-    FILE *file = strpbrk(mode, "wa+") ? NULL : open_plain(path, &bytes);
-    struct aiFile *f = file ? malloc(sizeof *f) : NULL;
-    note_materials(im, path, file != NULL);
-    if (!f) {
-        if (file)
-            (void)fclose(file);
-        return NULL;
+/* glTF names its files by URI: "my%20wood.png". */
+static void decode_percent(char *text) {
+    char *to = text;
+    for (const char *c = text; *c; c++) {
+        const int high = c[0] == '%' ? hex(c[1]) : -1;
+        const int low = high >= 0 ? hex(c[2]) : -1;
+        *to++ = low > 0 || (low == 0 && high > 0) ? (char)(high * 16 + low) : *c;
+        if (low >= 0)
+            c += 2;
     }
-    *f = (struct aiFile){.ReadProc = read_some,
-                         .WriteProc = write_nothing,
-                         .TellProc = tell,
-                         .FileSizeProc = size_of,
-                         .SeekProc = seek,
-                         .FlushProc = flush_nothing,
-                         .UserData = (char *)(void *)file};
-    import_note_file(im, path, bytes);
-    return f;
+    *to = '\0';
 }
 
-static void close_file(struct aiFileIO *io, struct aiFile *f) {
-    (void)io;
-    if (f) {
-        (void)fclose((FILE *)(void *)f->UserData);
-        free(f);
+/* Names are relative to the mesh's folder. An absolute one comes from its author's disk: its last part is tried here.
+ */
+bool import_resolve(const importer *im, const char *name, char path[SCENE_PATH]) {
+    char plain[SCENE_PATH];
+    const char *slash = strrchr(im->file, '/');
+    (void)snprintf(plain, sizeof plain, "%s", name);
+    for (char *c = plain; *c; c++)
+        if (*c == '\\')
+            *c = '/';
+    const char *relative = plain;
+    const char *last = strrchr(plain, '/');
+    if (last && (plain[0] == '/' || (isalpha((unsigned char)plain[0]) && plain[1] == ':')))
+        relative = last + 1;
+    for (int pass = 0; pass < 2; pass++) {
+        const int used = snprintf(path, SCENE_PATH, "%.*s%s", slash ? (int)(slash + 1 - im->file) : 0, im->file, relative);
+        if (used < 0 || used >= SCENE_PATH)
+            return false;
+        if (is_file(path))
+            return true;
+        decode_percent(plain + (relative - plain));
     }
+    return false;
 }
 
-struct aiFileIO import_file_io(importer *im) {
-    return (struct aiFileIO){.OpenProc = open_file, .CloseProc = close_file, .UserData = (char *)(void *)im};
+bool import_map(importer *im, const char *path, import_bytes *out) {
+    struct stat s;
+    *out = (import_bytes){0};
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe without a writer is not waited for */
+    const bool plain = fd >= 0 && fstat(fd, &s) == 0 && S_ISREG(s.st_mode) && s.st_size > 0;
+    void *at =
+        plain && (uint64_t)s.st_size <= SIZE_MAX ? mmap(NULL, (size_t)s.st_size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+    if (fd >= 0)
+        (void)close(fd);
+    if (at == MAP_FAILED)
+        return false;
+    out->at = at;
+    out->size = out->mapped = (size_t)s.st_size;
+    import_note_file(im, path, out->size);
+    return true;
+}
+
+void import_drop_bytes(import_bytes *bytes) {
+    if (bytes->mapped > 0)
+        (void)munmap((void *)(uintptr_t)bytes->at, bytes->mapped);
+    free(bytes->owned);
+    *bytes = (import_bytes){0};
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 typedef struct texture_mean {
-    char name[SCENE_PATH]; /* as Assimp gives it */
+    char name[SCENE_PATH]; /* as import_image() takes it */
     bool srgb;
     float mean[4];
 } texture_mean;
@@ -45,15 +45,5 @@ bool import_texture_mean(importer *im, const char *name, const char *material, b
         return false;
     im->means[im->mean_count++] = found;
     memcpy(mean, found.mean, sizeof found.mean);
-    return true;
-}
-
-bool import_texture_mean_of(importer *im, const struct aiMaterial *ai, enum aiTextureType type, unsigned index,
-                            const char *material, float mean[4]) {
-    struct aiString path;
-    if (aiGetMaterialTexture(ai, type, index, &path, NULL, NULL, NULL, NULL, NULL, NULL) == aiReturn_SUCCESS && path.length)
-        return import_texture_mean(im, path.data, material, type == aiTextureType_SPECULAR, mean);
-    for (int k = 0; k < 4; k++)
-        mean[k] = 1.0f;
     return true;
 }

@@ -12,7 +12,7 @@ enum { MOST_NAMED = 1 << 20 };
 
 /* The head of a model: how many of each follow, in this order, and what is added up. */
 typedef struct model_head {
-    uint64_t vertices, triangles, materials, images, cameras, lights, meshes, files, overrides;
+    uint64_t vertices, triangles, materials, images, cameras, lights, meshes, extensions, formats, files, overrides;
     uint64_t texels;
 #define X(name, meaning) uint64_t name;
     MODEL_COUNTS(X)
@@ -62,6 +62,8 @@ void wire_send_model(const importer *im, int images, wire *to) {
                        .cameras = (uint64_t)m->camera_count,
                        .lights = (uint64_t)m->light_count,
                        .meshes = (uint64_t)m->mesh_count,
+                       .extensions = (uint64_t)m->extension_count,
+                       .formats = (uint64_t)m->format_count,
                        .files = m->files.count,
                        .overrides = (uint64_t)im->s->material_count,
 #define X(name, meaning) .name = m->name,
@@ -80,6 +82,8 @@ void wire_send_model(const importer *im, int images, wire *to) {
     put(to, m->cameras, (size_t)m->camera_count * sizeof *m->cameras);
     put(to, m->lights, (size_t)m->light_count * sizeof *m->lights);
     put(to, m->meshes, (size_t)m->mesh_count * sizeof *m->meshes);
+    put(to, m->extensions, (size_t)m->extension_count * sizeof *m->extensions);
+    put(to, m->formats, (size_t)m->format_count);
     put(to, im->override_used, (size_t)im->s->material_count);
     for (int i = images; i < m->image_count; i++)
         send_image(&m->images[i], to);
@@ -161,12 +165,14 @@ static bool good_material(model_material *m, int images) {
 
 static bool good_camera(model_camera *c) {
     c->name[sizeof c->name - 1] = '\0';
+    c->parent[sizeof c->parent - 1] = '\0';
     return all_finite_doubles(c->eye, 3) && all_finite_doubles(c->target, 3) && all_finite_doubles(c->up, 3) &&
            isfinite(c->fov);
 }
 
 static bool good_light(model_light *l) {
     l->name[sizeof l->name - 1] = '\0';
+    l->parent[sizeof l->parent - 1] = '\0';
     return l->kind >= 0 && l->kind <= (int)VIT_LIGHT_DIRECTIONAL && all_finite_doubles(l->position, 3) &&
            all_finite_doubles(l->direction, 3) && all_finite_doubles(l->power, 3) && all_finite_doubles(l->stated, 3) &&
            isfinite(l->inner) && isfinite(l->outer) && isfinite(l->range) && is_bool(&l->states_unit);
@@ -176,8 +182,8 @@ static bool good_light(model_light *l) {
 static bool good_head(const importer *im, const model_head *h) {
     return h->triangles <= VIT_MAX_TRIANGLES && h->vertices <= 3 * h->triangles && h->materials <= h->triangles &&
            h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->meshes <= MOST_NAMED &&
-           h->files <= MOST_NAMED && h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels &&
-           isfinite(h->step);
+           h->extensions <= MODEL_EXTENSIONS * 2 && h->formats == 1 && h->files <= MOST_NAMED &&
+           h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels && isfinite(h->step);
 }
 
 /* Vertices and triangles behind those of the model, and what they refer to. */
@@ -229,6 +235,32 @@ static bool receive_materials(importer *im, const model_head *h, wire *from) {
     return true;
 }
 
+/* What the file said it uses, and who read it. */
+static bool receive_extensions(importer *im, const model_head *h, wire *from) {
+    model *m = im->m;
+    size_t extensions = (size_t)m->extension_count, formats = (size_t)m->format_count;
+    if ((h->extensions > 0 &&
+         !import_room(im, &m->extensions, &extensions, extensions + (size_t)h->extensions, sizeof *m->extensions)) ||
+        !import_room(im, &m->formats, &formats, formats + 1, sizeof *m->formats)) {
+        from->refused = true;
+        return false;
+    }
+    for (uint64_t i = 0; i < h->extensions; i++, m->extension_count++) {
+        model_extension *e = &m->extensions[m->extension_count];
+        if (!get(from, e, sizeof *e) || !is_bool(&e->required) || !is_bool(&e->read))
+            return false;
+        e->name[sizeof e->name - 1] = '\0';
+        e->file = im->file_index;
+    }
+    uint8_t format, count = 0;
+    while (import_formats[count])
+        count++;
+    if (!get(from, &format, sizeof format) || format >= count)
+        return false;
+    m->formats[m->format_count++] = format;
+    return true;
+}
+
 static bool receive_named(importer *im, const model_head *h, wire *from) {
     model *m = im->m;
     size_t cameras = (size_t)m->camera_count, lights = (size_t)m->light_count,
@@ -253,6 +285,8 @@ static bool receive_named(importer *im, const model_head *h, wire *from) {
         mesh->file = im->file_index;
         m->mesh_count++;
     }
+    if (!receive_extensions(im, h, from))
+        return false;
     for (uint64_t i = 0; i < h->overrides; i++) {
         unsigned char used;
         if (!get(from, &used, sizeof used))

@@ -2,8 +2,7 @@
 #include "vitrine_pack.h"
 #include <math.h>
 
-#define DIELECTRIC 0.04f /* reflectance of glTF's dielectrics at normal incidence */
-#define METAL 0.9f       /* what counts as one, and as smooth, where mirrors are concerned */
+#define METAL 0.9f /* what counts as one, and as smooth, where mirrors are concerned */
 #define SMOOTH 0.1f
 
 float specular_exponent(float roughness) {
@@ -12,15 +11,17 @@ float specular_exponent(float roughness) {
     return m < 1.0 ? 0.0f : (float)fmin(m, (double)VIT_MAX_EXPONENT);
 }
 
-void specular_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness) {
+void specular_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
+                            float metallic, float roughness) {
     const bool emits = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
     const bool mirror = metallic >= METAL && roughness <= SMOOTH && !emits;
     const float exponent = specular_exponent(roughness);
+    const float most = fmaxf(dielectric[0], fmaxf(dielectric[1], dielectric[2]));
     m->kind = mirror ? VIT_MIRROR : VIT_MATTE;
     m->exponent = mirror || exponent == 0.0f ? 1.0f : exponent;
     for (int i = 0; i < 3; i++) {
-        const float at_normal = DIELECTRIC + (mean[i] - DIELECTRIC) * metallic;
+        const float at_normal = dielectric[i] + (mean[i] - dielectric[i]) * metallic;
         m->specular[i] = mirror ? mean[i] : exponent > 0.0f ? at_normal : 0.0f;
-        m->albedo[i] = mirror || exponent == 0.0f ? base[i] : base[i] * (1.0f - metallic) * (1.0f - DIELECTRIC);
+        m->albedo[i] = mirror || exponent == 0.0f ? base[i] : base[i] * (1.0f - metallic) * (1.0f - most);
     }
 }

@@ -11,9 +11,13 @@
  * (tests/numeric/test_specular_mapping.c has the errors). */
 float specular_exponent(float roughness);
 
+#define SPECULAR_DIELECTRIC 0.04f
+
 /* Sets kind, albedo, specular and exponent. base: of the material, multiplied by the texture where there is one; mean:
- * likewise, the texture's mean taken for it, since reflectances of lobes and mirrors have no texture. Metals (metallic >= 0.9)
- * of roughness <= 0.1 become mirrors, unless they emit; wide lobes matt surfaces of the base colour. */
-void specular_from_metallic(model_material *m, const float base[3], const float mean[3], float metallic, float roughness);
+ * likewise, the texture's mean taken for it, since reflectances of lobes and mirrors have no texture; dielectric: reflectance
+ * at normal incidence of what is no metal, 0.04 for glTF's index 1.5. Metals (metallic >= 0.9) of roughness <= 0.1 become
+ * mirrors, unless they emit; wide lobes matt surfaces of the base colour. */
+void specular_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
+                            float metallic, float roughness);
 
 #endif

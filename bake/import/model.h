@@ -52,6 +52,16 @@ typedef struct model_mesh {
     uint64_t triangles; /* that are in the model, of all places */
 } model_mesh;
 
+/* An extension that a glTF file says it uses. */
+typedef struct model_extension {
+    char name[64];
+    uint32_t file; /* index in scene.meshes */
+    bool required; /* the file is not what it means without it */
+    bool read;     /* what of it a vitrine can show is shown */
+} model_extension;
+
+enum { MODEL_EXTENSIONS = 256 }; /* of a file */
+
 /* What is counted over all files, and travels from the child that reads one: X(name, meaning). */
 #define MODEL_COUNTS(X)                                                                                                        \
     X(degenerate, "triangles dropped for zero area")                                                                           \
@@ -78,6 +88,10 @@ typedef struct model {
     int light_count;
     model_mesh *meshes; /* those that a node puts somewhere */
     int mesh_count;
+    model_extension *extensions;
+    int extension_count;
+    uint8_t *formats; /* a mesh file each: which of import_formats reads it */
+    int format_count;
     double lo[3], hi[3]; /* box of the vertices in use */
     double step;         /* m between neighbouring floats where the files' vertices are farthest from their origin */
 #define X(name, meaning) uint64_t name;
@@ -91,12 +105,18 @@ typedef struct model {
 /* One line, without a line feed, for the user to see. */
 typedef void model_warn_fn(void *user, const char *line);
 
+/* How what a file says and the baker does not do is taken. */
+typedef enum model_rigour {
+    MODEL_WARNS,  /* a warning; an error where the file says that it means nothing without it */
+    MODEL_STRICT, /* an error, and so is a missing or broken texture */
+    MODEL_LISTS   /* a warning in any case: to show what a file holds */
+} model_rigour;
+
 /* Imports every mesh of `s`, applies node and scene transforms and material overrides, decodes the textures in use.
- * strict: a missing or broken texture is VIT_BAD_INPUT rather than a warning and the plain colour.
  * VIT_BAD_INPUT: the text names file and cause. On failure nothing is left to free. */
-vit_status model_import(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
+vit_status model_import(const scene *s, model_rigour rigour, model_warn_fn *warn, void *user, model *out, vit_text *why);
 /* The same in this process rather than in a child, for fuzzing and debuggers: a file may end it. */
-vit_status model_import_here(const scene *s, bool strict, model_warn_fn *warn, void *user, model *out, vit_text *why);
+vit_status model_import_here(const scene *s, model_rigour rigour, model_warn_fn *warn, void *user, model *out, vit_text *why);
 void model_free(model *m);
 
 /* The first whose node is called so, or else whose parent node is: exporters hang what they turn below the node that users

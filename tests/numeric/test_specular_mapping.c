@@ -40,10 +40,12 @@ static double gltf(double base, double metallic, double roughness, const double 
     return metallic * metal + (1 - metallic) * (base / PI * (1 - f) + d * vis * f);
 }
 
+static const float dielectric[3] = {SPECULAR_DIELECTRIC, SPECULAR_DIELECTRIC, SPECULAR_DIELECTRIC};
+
 static model_material mapped(double base, double metallic, double roughness) {
     const float c[3] = {(float)base, (float)base, (float)base};
     model_material m = {0};
-    specular_from_metallic(&m, c, c, (float)metallic, (float)roughness);
+    specular_from_metallic(&m, c, c, dielectric, (float)metallic, (float)roughness);
     assert_int_equal(m.kind, VIT_MATTE);
     return m;
 }
@@ -129,16 +131,16 @@ static void smooth_metals_are_mirrors_and_wide_lobes_matt(void **state) {
     static const float base[3] = {0.9f, 0.7f, 0.5f};
     model_material m = {0};
     (void)state;
-    specular_from_metallic(&m, base, base, 1.0f, 0.1f);
+    specular_from_metallic(&m, base, base, dielectric, 1.0f, 0.1f);
     assert_true(m.kind == VIT_MIRROR && m.specular[1] == 0.7f && m.exponent == 1.0f);
-    specular_from_metallic(&m, base, base, 1.0f, 0.11f);
+    specular_from_metallic(&m, base, base, dielectric, 1.0f, 0.11f);
     assert_true(m.kind == VIT_MATTE && m.specular[1] == 0.7f && m.albedo[1] == 0.0f && m.exponent > 3000.0f);
-    specular_from_metallic(&m, base, base, 0.89f, 0.1f);
+    specular_from_metallic(&m, base, base, dielectric, 0.89f, 0.1f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] < 0.9f && m.albedo[0] > 0.0f && m.albedo[0] + m.specular[0] <= 1.0f);
-    specular_from_metallic(&m, base, base, 1.0f, 0.7f);
+    specular_from_metallic(&m, base, base, dielectric, 1.0f, 0.7f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] == 0.0f && m.albedo[0] == 0.9f && m.exponent == 1.0f);
     m.emission[1] = 1.0f; /* what emits is seen: no mirror */
-    specular_from_metallic(&m, base, base, 1.0f, 0.0f);
+    specular_from_metallic(&m, base, base, dielectric, 1.0f, 0.0f);
     assert_true(m.kind == VIT_MATTE && m.specular[0] == 0.9f && m.exponent == VIT_MAX_EXPONENT);
     float last = VIT_MAX_EXPONENT;
     for (int i = 0; i <= 1000; i++) {

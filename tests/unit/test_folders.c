@@ -76,7 +76,7 @@ static const char *judge(tree *t) {
     t->fault[0] = '\0';
     for (int i = 0; i < t->count; i++) {
         const file *f = &t->files[i];
-        const char *slash = strchr(f->path, '/');
+        const char *slash = strrchr(f->path, '/');
         for (int k = 0; k < f->includes; k++) {
             char beside[2 * PATH];
             (void)snprintf(beside, sizeof beside, "%.*s%s", slash ? (int)(slash - f->path + 1) : 0, f->path, f->include[k]);
@@ -107,10 +107,10 @@ static void read_folder(tree *t, const char *folder) {
         (void)snprintf(below, sizeof below, "%.100s%s%.200s", folder, folder[0] ? "/" : "", e->d_name);
         (void)snprintf(path, sizeof path, "bake/%s", below);
         assert_int_equal(stat(path, &s), 0);
-        if (S_ISDIR(s.st_mode) && !folder[0] && e->d_name[0] != '.' && strcmp(e->d_name, "scenes") != 0) {
-            if (place_of(e->d_name, strlen(e->d_name)) < 0)
+        if (S_ISDIR(s.st_mode) && e->d_name[0] != '.' && strcmp(below, "scenes") != 0) {
+            if (!folder[0] && place_of(e->d_name, strlen(e->d_name)) < 0)
                 fail_msg("bake/%s has no place in the order", e->d_name);
-            read_folder(t, e->d_name);
+            read_folder(t, below); /* folders in a folder are of its place */
         }
         const char *dot = strrchr(e->d_name, '.');
         if (!S_ISREG(s.st_mode) || !dot || (strcmp(dot, ".c") != 0 && strcmp(dot, ".h") != 0))
@@ -142,6 +142,8 @@ static void each_fault_is_found(void **state) {
         {{"pack/a.h", "pack/b.c"}, {"", "/* b */\n#include \"a.h\"\n"}, "pack/b.c: \"a.h\" does not say its folder"},
         {{"pack/a.h", "pack/b.h"}, {"#include \"pack/b.h\"\n", "#include \"pack/a.h\"\n"}, "by way of"},
         {{"main.c", "cost/b.h"}, {"#include \"cost/b.h\"\n", ""}, ""},
+        {{"import/a/b.h", "import/a/c.c"}, {"", "#include \"b.h\"\n"}, "import/a/c.c: \"b.h\" does not say its folder"},
+        {{"import/a/b.h", "pack/c.h"}, {"#include \"pack/c.h\"\n", ""}, "of a later folder"},
         {{"options.h", "cost/b.h"}, {"", "#include \"options.h\"\n"}, "of a later folder"},
     };
     (void)state;

@@ -115,7 +115,7 @@ static void transmission_is_glass(void **state) {
     assert_true(m.materials[0].absorption[0] == 0.0f && fabsf(m.materials[0].absorption[1] - 2.0f * 0.69314718f) < 1e-6f);
     assert_true(m.materials[0].absorption[2] == 1e9f && near3(m.materials[0].albedo, 0, 0, 0));
     model_free(&m);
-    import_gltf(TRANSMITS("0.5", ""), USED, "", &m);
+    import_gltf(PBR("\"metallicFactor\":0") "," TRANSMITS("0.5", ""), USED, "", &m);
     assert_true(m.materials[0].kind == VIT_THIN_GLASS && m.materials[0].ior == 1.5f &&
                 near3(m.materials[0].absorption, 0, 0, 0));
     model_free(&m);
@@ -124,11 +124,27 @@ static void transmission_is_glass(void **state) {
     model_free(&m);
 }
 
+/* Only what is no metal lets light through, and a material that says nothing is a metal (3.9.2). */
+static void a_metal_lets_nothing_through(void **state) {
+    model m;
+    (void)state;
+    import_gltf(TRANSMITS("1", ""), USED, "", &m);
+    assert_true(is_matt(&m.materials[0]) && near3(m.materials[0].albedo, 1, 1, 1));
+    model_free(&m);
+    import_gltf(PBR("\"metallicFactor\":0.6") "," TRANSMITS("1", ""), USED, "", &m);
+    assert_true(m.materials[0].kind == VIT_MATTE);
+    model_free(&m);
+    import_gltf(PBR("\"metallicFactor\":0.4") "," TRANSMITS("1", ""), USED, "", &m);
+    assert_true(m.materials[0].kind == VIT_THIN_GLASS);
+    model_free(&m);
+}
+
 static void what_is_clear_by_alpha_as_well_is_glass_and_no_hole(void **state) {
     model m;
     (void)state;
     put_texture();
-    import_gltf(PBR("\"baseColorTexture\":{\"index\":0}") ",\"alphaMode\":\"BLEND\"," TRANSMITS("1", ""), USED IMAGE, "", &m);
+    import_gltf(PBR("\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0}") ",\"alphaMode\":\"BLEND\"," TRANSMITS("1", ""),
+                USED IMAGE, "", &m);
     assert_true(m.materials[0].kind == VIT_THIN_GLASS && m.materials[0].cutoff == 0.0f && m.materials[0].image < 0);
     assert_true(near3(m.materials[0].specular, 0.5, 0.5, 0.5 * pow((128 / 255.0 + 0.055) / 1.055, 2.4)));
     model_free(&m);
@@ -173,6 +189,7 @@ int main(void) {
         cmocka_unit_test(smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it),
         cmocka_unit_test(lobes_take_the_mean_of_textures),
         cmocka_unit_test(transmission_is_glass),
+        cmocka_unit_test(a_metal_lets_nothing_through),
         cmocka_unit_test(what_is_clear_by_alpha_as_well_is_glass_and_no_hole),
         cmocka_unit_test(specular_and_glossiness_make_a_lobe),
         cmocka_unit_test(the_dragon_is_of_amber),

@@ -1,5 +1,5 @@
 /* What the importer mends in Assimp's scenes before anything walks them, on scenes made here in memory: no file is read. */
-#include "import/importer.h"
+#include "import/assimp/assimp_scene.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,6 +16,7 @@ typedef struct lab {
     struct aiMesh *meshes[1];
     struct aiScene scene;
     importer im;
+    assimp_scene a;
     vit_text why;
 } lab;
 
@@ -37,14 +38,15 @@ static lab *make_lab(unsigned first, unsigned second) {
     l->meshes[0] = &l->mesh;
     l->scene.mNumMeshes = 1;
     l->scene.mMeshes = l->meshes;
-    l->im.ai = &l->scene;
+    l->a.im = &l->im;
+    l->a.ai = &l->scene;
     l->im.why = &l->why;
     l->im.file = "made here";
     return l;
 }
 
 static void drop_lab(lab *l) {
-    import_free_cuts(&l->im);
+    assimp_free_cuts(&l->a);
     free(l);
 }
 
@@ -52,7 +54,7 @@ static void a_polygon_with_a_bad_index_is_emptied_and_counted(void **state) {
     lab *l = make_lab(4, 3);
     (void)state;
     l->index[0][3] = 77;
-    assert_true(import_triangulate(&l->im));
+    assert_true(assimp_triangulate(&l->a));
     assert_true(l->im.bad_polygon == 1 && l->faces[0].mNumIndices == 0 && l->faces[1].mNumIndices == 3);
     drop_lab(l);
 }
@@ -60,7 +62,7 @@ static void a_polygon_with_a_bad_index_is_emptied_and_counted(void **state) {
 static void so_is_one_of_too_many_corners(void **state) {
     lab *l = make_lab(3, IMPORT_CORNERS + 1);
     (void)state;
-    assert_true(import_triangulate(&l->im));
+    assert_true(assimp_triangulate(&l->a));
     assert_true(l->im.bad_polygon == 1 && l->faces[0].mNumIndices == 3 && l->faces[1].mNumIndices == 0);
     drop_lab(l);
 }
@@ -69,8 +71,8 @@ static void so_is_one_of_too_many_corners(void **state) {
 static void a_mesh_without_a_polygon_to_cut_says_so(void **state) {
     lab *l = make_lab(3, 0);
     (void)state;
-    assert_true(import_triangulate(&l->im));
-    assert_ptr_equal(l->im.ai, &l->scene);
+    assert_true(assimp_triangulate(&l->a));
+    assert_ptr_equal(l->a.ai, &l->scene);
     assert_true(l->im.bad_polygon == 0 && l->mesh.mPrimitiveTypes == aiPrimitiveType_TRIANGLE);
     drop_lab(l);
 }
@@ -88,8 +90,8 @@ static void lists_with_holes_have_none_afterwards(void **state) {
     child.mNumMeshes = 2;
     child.mMeshes = meshes;
     l->scene.mRootNode = &root;
-    assert_true(import_mend_tree(&l->im));
-    assert_true(root.mNumChildren == 1 && root.mChildren[0] == &child && l->im.lost_nodes == 2);
+    assert_true(assimp_mend_tree(&l->a));
+    assert_true(root.mNumChildren == 1 && root.mChildren[0] == &child && l->a.lost_nodes == 2);
     drop_lab(l);
 }
 
@@ -97,7 +99,7 @@ static void a_face_whose_corners_are_missing_is_refused(void **state) {
     lab *l = make_lab(3, 3);
     (void)state;
     l->faces[1].mIndices = NULL;
-    assert_false(import_mend_tree(&l->im));
+    assert_false(assimp_mend_tree(&l->a));
     assert_non_null(strstr(l->why.text, "mesh 0 has faces without corners"));
     drop_lab(l);
 }

@@ -1,6 +1,6 @@
 /* Polygons of five corners and more: cut here, by their ears, and alike for all releases of Assimp, of which 5.3 loses parts of
  * those that are not convex. */
-#include "import/importer.h"
+#include "import/assimp/assimp_scene.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -79,7 +79,7 @@ static void cut(const struct aiMesh *mesh, const unsigned *corner, unsigned coun
     }
 }
 
-bool import_cut(importer *im, const struct aiMesh *mesh, polygon_cut *out) {
+bool assimp_cut(assimp_scene *a, const struct aiMesh *mesh, polygon_cut *out) {
     size_t triangles = 0, polygons = 0;
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         if (mesh->mFaces[i].mNumIndices > 4) {
@@ -92,7 +92,7 @@ bool import_cut(importer *im, const struct aiMesh *mesh, polygon_cut *out) {
     out->corner = calloc(triangles, 3 * sizeof *out->corner);
     if (!o || !out->corner) {
         free(o);
-        return import_fail(im, "out of memory");
+        return import_fail(a->im, "out of memory");
     }
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         struct aiFace *face = &mesh->mFaces[i];

@@ -1,22 +1,30 @@
 #include "import/importer.h"
 #include "common/triangle.h"
-#include <assimp/mesh.h>
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct instance {
-    const struct aiMesh *mesh;
-    const polygon_cut *cut;
+    const mesh_part *part;
     const double *world; /* 3 x 4 */
     bool mirrored;       /* its determinant is negative */
-    float *position;     /* 3 a vertex of the mesh, in the world */
-    uint32_t *vertex;    /* a vertex of the mesh: its index in the model, VIT_NONE so far */
-    uint32_t *corner;    /* 3 a surviving triangle: vertices of the mesh */
+    float *position;     /* 3 a vertex of the part, in the world */
+    uint32_t *vertex;    /* a vertex of the part: its index in the model, VIT_NONE so far */
+    uint32_t *corner;    /* 3 a surviving triangle: vertices of the part */
     size_t triangles;
-    float *smooth; /* 9 a surviving triangle; NULL if the mesh has normals */
+    float *smooth; /* 9 a surviving triangle; NULL if the part has normals */
 } instance;
+
+void import_multiply(const double a[12], const double b[12], double out[12]) {
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++) {
+            out[4 * r + c] = c == 3 ? a[4 * r + 3] : 0.0;
+            for (int k = 0; k < 3; k++)
+                out[4 * r + c] += a[4 * r + k] * b[4 * k + c];
+        }
+}
 
 static double determinant(const double m[12]) {
     return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
@@ -35,16 +43,15 @@ static shape triangle_shape(const float *a, const float *b, const float *c) {
 }
 
 static void place_vertices(importer *im, instance *in) {
-    const struct aiMesh *mesh = in->mesh;
-    for (size_t i = 0; i < mesh->mNumVertices; i++) {
-        const struct aiVector3D *v = &mesh->mVertices[i];
+    for (size_t i = 0; i < in->part->vertices; i++) {
+        const float *v = in->part->position.at + in->part->position.stride * i;
+        const double x = (double)v[0], y = (double)v[1], z = (double)v[2];
         for (size_t k = 0; k < 3; k++) {
             const double *row = in->world + 4 * k;
-            const double far =
-                fmax(fmax(fabs(row[0] * (double)v->x), fabs(row[1] * (double)v->y)), fabs(row[2] * (double)v->z));
+            const double far = fmax(fmax(fabs(row[0] * x), fabs(row[1] * y)), fabs(row[2] * z));
             if (far <= (double)IMPORT_FAR) /* what lies farther out is dropped */
                 im->m->step = fmax(im->m->step, far * 0x1p-23);
-            in->position[3 * i + k] = (float)(row[0] * (double)v->x + row[1] * (double)v->y + row[2] * (double)v->z + row[3]);
+            in->position[3 * i + k] = (float)(row[0] * x + row[1] * y + row[2] * z + row[3]);
         }
         in->vertex[i] = VIT_NONE;
     }
@@ -66,10 +73,10 @@ static bool is_far(importer *im, const instance *in, const uint32_t v[3]) {
 }
 
 /* Keeps the triangle if it has an area, counts it otherwise. */
-static void sift_triangle(importer *im, instance *in, const unsigned *corner) {
-    const struct aiMesh *mesh = in->mesh;
+static void sift_triangle(importer *im, instance *in, const uint32_t *corner) {
+    const uint32_t vertices = in->part->vertices;
     const uint32_t v[3] = {corner[0], corner[in->mirrored ? 2 : 1], corner[in->mirrored ? 1 : 2]};
-    if (v[0] >= mesh->mNumVertices || v[1] >= mesh->mNumVertices || v[2] >= mesh->mNumVertices) {
+    if (v[0] >= vertices || v[1] >= vertices || v[2] >= vertices) {
         im->bad_index++;
         return;
     }
@@ -90,26 +97,11 @@ static void sift_triangle(importer *im, instance *in, const unsigned *corner) {
     }
 }
 
-static void sift_faces(importer *im, instance *in) {
-    const struct aiMesh *mesh = in->mesh;
-    for (size_t i = 0; i < mesh->mNumFaces; i++) {
-        const struct aiFace *face = &mesh->mFaces[i];
-        if (face->mNumIndices == 0) /* emptied by import_triangulate() */
-            continue;
-        if (face->mNumIndices == 3)
-            sift_triangle(im, in, face->mIndices);
-        else
-            im->m->not_triangles++;
-    }
-    for (size_t i = 0; i < in->cut->triangles; i++)
-        sift_triangle(im, in, in->cut->corner + 3 * i);
-}
-
-/* Normal of vertex `v` of the mesh in the world: by the cofactors of the matrix, which is its inverse transpose up to a
- * factor and needs no inverse. False if the mesh has none that is of any use there. */
+/* Normal of vertex `v` of the part in the world: by the cofactors of the matrix, which is its inverse transpose up to a
+ * factor and needs no inverse. False if the part has none that is of any use there. */
 static bool vertex_normal(const instance *in, uint32_t v, float out[3]) {
-    const struct aiVector3D *a = &in->mesh->mNormals[v];
-    const double *m = in->world, n[3] = {(double)a->x, (double)a->y, (double)a->z};
+    const float *a = in->part->normal.at + in->part->normal.stride * v;
+    const double *m = in->world, n[3] = {(double)a[0], (double)a[1], (double)a[2]};
     double w[3], square = 0.0;
     for (int i = 0; i < 3; i++) {
         const double *p = m + 4 * ((i + 1) % 3), *q = m + 4 * ((i + 2) % 3);
@@ -139,13 +131,13 @@ static void face_normal(const instance *in, const uint32_t *corner, float out[3]
         out[i] = (float)(n[i] / length);
 }
 
-/* v = 0 is the first row of the image here; Assimp has it at the bottom for every format, glTF included. */
+/* v = 0 is the first row of the image in the model. */
 static void vertex_uv(const instance *in, const material_use *use, uint32_t v, float out[2]) {
     out[0] = out[1] = 0.0f;
-    if (use->uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !in->mesh->mTextureCoords[use->uv_set])
+    if (use->uv_set >= IMPORT_UV_SETS || !in->part->uv[use->uv_set].at)
         return;
-    const struct aiVector3D *a = &in->mesh->mTextureCoords[use->uv_set][v];
-    double u = (double)a->x, w = 1.0 - (double)a->y;
+    const float *a = in->part->uv[use->uv_set].at + in->part->uv[use->uv_set].stride * v;
+    double u = (double)a[0], w = in->part->v_up ? 1.0 - (double)a[1] : (double)a[1];
     if (use->has_transform) {
         const double *t = use->uv, was = u;
         u = t[0] * was + t[1] * w + t[2];
@@ -178,7 +170,7 @@ static uint32_t add_vertex(model *m, const instance *in, const material_use *use
     return m->vertices++;
 }
 
-/* A vertex is shared by the mesh's triangles if the mesh has a normal for it; where we made the normals, each corner is one. */
+/* A vertex is shared by the part's triangles if the part has a normal for it; where we made the normals, each corner is one. */
 static void add_triangles(importer *im, instance *in, const material_use *use, uint32_t material) {
     model *m = im->m;
     for (size_t t = 0; t < in->triangles; t++) {
@@ -201,35 +193,36 @@ static void add_triangles(importer *im, instance *in, const material_use *use, u
     m->materials[material].triangles += in->triangles;
 }
 
-/* A vertex colour multiplies the albedo if it is the same all over the mesh. */
-static void constant_color(importer *im, const struct aiMesh *mesh, float tint[3]) {
-    const struct aiColor4D *c = mesh->mColors[0];
+/* A vertex colour multiplies the albedo if it is the same all over the part. */
+static void constant_color(importer *im, const mesh_part *part, float tint[3]) {
+    const float *c = part->color.at;
     tint[0] = tint[1] = tint[2] = 1.0f;
     if (!c)
         return;
-    for (unsigned i = 0; i < mesh->mNumVertices; i++)
-        if (!(c[i].r == c[0].r && c[i].g == c[0].g && c[i].b == c[0].b)) {
+    for (size_t i = 0; i < part->vertices; i++) {
+        const float *other = c + i * part->color.stride;
+        if (!(other[0] == c[0] && other[1] == c[1] && other[2] == c[2])) {
             if (!im->warned_colors)
                 import_warn(im, "vertex colours that vary over a mesh are left out");
             im->warned_colors = true;
             return;
         }
-    tint[0] = c[0].r;
-    tint[1] = c[0].g;
-    tint[2] = c[0].b;
+    }
+    memcpy(tint, c, 3 * sizeof *tint);
 }
 
 static bool add_instance(importer *im, instance *in) {
-    const struct aiMesh *mesh = in->mesh;
+    const mesh_part *part = in->part;
     float tint[3];
     material_use *use;
     uint32_t material;
     place_vertices(im, in);
-    sift_faces(im, in);
+    for (size_t i = 0; i < part->triangles; i++)
+        sift_triangle(im, in, part->corner + 3 * i);
     if (in->triangles == 0)
         return true;
-    constant_color(im, mesh, tint);
-    if (!import_material(im, mesh->mMaterialIndex, tint, &use))
+    constant_color(im, part, tint);
+    if (!import_material(im, part->material, tint, &use))
         return false;
     if (use->hole) {
         if (im->clear == 0)
@@ -237,50 +230,47 @@ static bool add_instance(importer *im, instance *in) {
         im->clear += in->triangles;
         return true;
     }
-    if (!mesh->mNormals) {
+    if (!part->normal.at) {
         in->smooth = calloc(in->triangles, 9 * sizeof *in->smooth);
         if (!in->smooth || !import_normals(in->position, in->corner, in->triangles, in->smooth))
             return import_fail(im, "out of memory");
     }
     if (!import_material_index(im, use, &material) || !import_make_room(im, 3 * in->triangles, in->triangles))
         return false;
-    const bool has_uv = use->uv_set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh->mTextureCoords[use->uv_set];
+    const bool has_uv = use->uv_set < IMPORT_UV_SETS && part->uv[use->uv_set].at;
     if (im->m->materials[material].image >= 0 && !has_uv && !use->warned_uv) {
         import_warn(im, "material '%.100s': mesh '%.100s' and perhaps others have no texture coordinates", use->m.name,
-                    mesh->mName.data);
+                    part->name);
         use->warned_uv = true;
     }
     add_triangles(im, in, use, material);
     return true;
 }
 
-/* Once a file. */
-static void say_rigid(importer *im, const struct aiMesh *mesh) {
-    if (mesh->mNumAnimMeshes > 0 && !im->warned_morph)
-        import_warn(im, "morph targets are left out: meshes keep their base shape");
-    if (mesh->mNumBones > 0 && !im->warned_bones)
-        import_warn(im, "skins are left out: meshes do not follow their bones");
-    im->warned_morph |= mesh->mNumAnimMeshes > 0;
-    im->warned_bones |= mesh->mNumBones > 0;
+bool import_begin_meshes(importer *im, size_t count) {
+    im->placed = calloc(count + 1, sizeof *im->placed);
+    im->placed_count = im->placed ? count : 0;
+    return im->placed ? true : import_fail(im, "out of memory");
 }
 
-bool import_mesh(importer *im, unsigned index, const double world[12]) {
-    const struct aiMesh *mesh = im->ai->mMeshes[index];
-    const polygon_cut *cut = &im->cuts[index];
-    if (!mesh->mVertices || !mesh->mFaces || !mesh->mNumVertices || !mesh->mNumFaces)
+void import_count_place(importer *im, size_t mesh, const char *name) {
+    im->placed[mesh].places++;
+    (void)snprintf(im->placed[mesh].name, sizeof im->placed[mesh].name, "%.*s", SCENE_NAME - 1, name);
+}
+
+bool import_place(importer *im, size_t mesh, const mesh_part *part, const double world[12]) {
+    const uint32_t before = im->m->triangles;
+    if (part->vertices == 0 || part->triangles == 0)
         return true;
-    if (mesh->mMaterialIndex >= im->ai->mNumMaterials)
-        return import_fail(im, "mesh '%.100s' has material %u of %u", mesh->mName.data, mesh->mMaterialIndex,
-                           im->ai->mNumMaterials);
-    say_rigid(im, mesh);
-    instance in = {.mesh = mesh, .cut = cut, .world = world, .mirrored = determinant(world) < 0.0};
-    in.position = calloc(mesh->mNumVertices, 3 * sizeof *in.position);
-    in.vertex = calloc(mesh->mNumVertices, sizeof *in.vertex);
-    in.corner = calloc(mesh->mNumFaces + cut->triangles, 3 * sizeof *in.corner);
+    instance in = {.part = part, .world = world, .mirrored = determinant(world) < 0.0};
+    in.position = calloc(part->vertices, 3 * sizeof *in.position);
+    in.vertex = calloc(part->vertices, sizeof *in.vertex);
+    in.corner = calloc(part->triangles, 3 * sizeof *in.corner);
     const bool fine = in.position && in.vertex && in.corner ? add_instance(im, &in) : import_fail(im, "out of memory");
     free(in.position);
     free(in.vertex);
     free(in.corner);
     free(in.smooth);
+    im->placed[mesh].triangles += im->m->triangles - before;
     return fine;
 }

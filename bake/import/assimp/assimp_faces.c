@@ -1,4 +1,4 @@
-#include "import/importer.h"
+#include "import/assimp/assimp_scene.h"
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ static bool in_range(const struct aiMesh *mesh, const struct aiFace *face) {
 }
 
 /* Empties the polygons that cannot be cut; says whether any quad is left, which Assimp is to cut. */
-static bool sift_polygons(importer *im, const struct aiMesh *mesh) {
+static bool sift_polygons(assimp_scene *a, const struct aiMesh *mesh) {
     bool quads = false;
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         struct aiFace *face = &mesh->mFaces[i];
@@ -21,35 +21,35 @@ static bool sift_polygons(importer *im, const struct aiMesh *mesh) {
             quads |= face->mNumIndices == 4;
             continue;
         }
-        im->bad_polygon++;
+        a->im->bad_polygon++;
         face->mNumIndices = 0;
     }
     return quads;
 }
 
-bool import_triangulate(importer *im) {
+bool assimp_triangulate(assimp_scene *a) {
     bool quads = false;
-    im->cut_count = im->ai->mNumMeshes;
-    im->cuts = calloc((size_t)im->cut_count + 1, sizeof *im->cuts);
-    if (!im->cuts)
-        return import_fail(im, "out of memory");
-    for (unsigned i = 0; i < im->ai->mNumMeshes; i++) {
-        struct aiMesh *mesh = im->ai->mMeshes[i];
-        if (sift_polygons(im, mesh))
+    a->cut_count = a->ai->mNumMeshes;
+    a->cuts = calloc((size_t)a->cut_count + 1, sizeof *a->cuts);
+    if (!a->cuts)
+        return import_fail(a->im, "out of memory");
+    for (unsigned i = 0; i < a->ai->mNumMeshes; i++) {
+        struct aiMesh *mesh = a->ai->mMeshes[i];
+        if (sift_polygons(a, mesh))
             quads = true;
         else /* a face without corners counts as one for Assimp, which ends the process when it then finds nothing to cut */
             mesh->mPrimitiveTypes = (mesh->mPrimitiveTypes & ~(unsigned)aiPrimitiveType_POLYGON) | aiPrimitiveType_TRIANGLE;
-        if (!import_cut(im, mesh, &im->cuts[i]))
+        if (!assimp_cut(a, mesh, &a->cuts[i]))
             return false;
     }
     if (quads)
-        im->ai = aiApplyPostProcessing(im->ai, aiProcess_Triangulate);
-    return im->ai ? true : import_fail(im, "its polygons cannot be cut into triangles");
+        a->ai = aiApplyPostProcessing(a->ai, aiProcess_Triangulate);
+    return a->ai ? true : import_fail(a->im, "its polygons cannot be cut into triangles");
 }
 
-void import_free_cuts(importer *im) {
-    for (unsigned i = 0; im->cuts && i < im->cut_count; i++)
-        free(im->cuts[i].corner);
-    free(im->cuts);
-    im->cuts = NULL;
+void assimp_free_cuts(assimp_scene *a) {
+    for (unsigned i = 0; a->cuts && i < a->cut_count; i++)
+        free(a->cuts[i].corner);
+    free(a->cuts);
+    a->cuts = NULL;
 }

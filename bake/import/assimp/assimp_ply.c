@@ -1,4 +1,4 @@
-#include "import/importer.h"
+#include "import/assimp/assimp_scene.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static bool check_header(importer *im, FILE *file) {
     return import_fail(im, "the PLY header has no end");
 }
 
-bool import_check_ply(importer *im) {
+bool assimp_check_ply(importer *im) {
     char magic[8] = {0};
     FILE *file = fopen(im->file, "rb");
     if (!file)

@@ -1,0 +1,97 @@
+/* Cameras and lights of Assimp's tree: they hang on the node of their name. */
+#include "import/assimp/assimp_scene.h"
+#include "common/pi.h"
+#include "common/strict_math.h"
+#include <assimp/camera.h>
+#include <assimp/light.h>
+#include <stdio.h>
+#include <string.h>
+
+static void take(const struct aiVector3D *v, double out[3]) {
+    out[0] = (double)v->x;
+    out[1] = (double)v->y;
+    out[2] = (double)v->z;
+}
+
+static void take_names(const struct aiNode *node, char name[SCENE_NAME], char parent[SCENE_NAME]) {
+    (void)snprintf(name, SCENE_NAME, "%.*s", SCENE_NAME - 1, node->mName.data);
+    (void)snprintf(parent, SCENE_NAME, "%.*s", SCENE_NAME - 1, node->mParent ? node->mParent->mName.data : "");
+}
+
+/* Vertical angle in degrees; 0 if the file states none, or nothing that a camera could have. */
+static double vertical_fov(const struct aiCamera *c) {
+    const double across = (double)c->mHorizontalFOV, aspect = (double)c->mAspect;
+    const double up = aspect > 0.0 ? 2.0 * strict_atan(strict_tan(0.5 * across) / aspect) : across;
+    const double degrees = up * 180.0 / PI;
+    return degrees > 1.0 && degrees < 170.0 ? degrees : 0.0;
+}
+
+bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double world[12]) {
+    for (unsigned i = 0; i < a->ai->mNumCameras; i++) {
+        const struct aiCamera *c = a->ai->mCameras[i];
+        model_camera camera = {.fov = vertical_fov(c)};
+        double place[3], look[3], up[3], forward[3];
+        if (strcmp(c->mName.data, node->mName.data) != 0)
+            continue;
+        take(&c->mPosition, place);
+        take(&c->mLookAt, look);
+        take(&c->mUp, up);
+        import_transform_point(world, place, camera.eye);
+        import_transform_vector(world, look, forward);
+        import_transform_vector(world, up, camera.up);
+        take_names(node, camera.name, camera.parent);
+        if (c->mOrthographicWidth > 0.0f)
+            import_warn(a->im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
+                        c->mName.data);
+        if (!import_add_camera(a->im, &camera, forward))
+            return false;
+    }
+    return true;
+}
+
+/* Degrees from the axis. What half the cone's angle is of the number that Assimp gives: it hands on what the file says, and
+ * formats differ. In these angles are from the axis; FBX, COLLADA (as its exporters write it), 3DS, ASE and Blender say the
+ * whole cone's. */
+static void read_cone(const importer *im, const struct aiLight *l, model_light *out) {
+    static const char *const from_axis[] = {".x3d", ".x3dv", ".wrl", ".lws"};
+    double part = 0.5 * 180.0 / PI;
+    for (size_t i = 0; i < sizeof from_axis / sizeof from_axis[0]; i++)
+        if (import_has_suffix(im->file, from_axis[i]))
+            part = 180.0 / PI;
+    out->inner = (double)l->mAngleInnerCone * part;
+    out->outer = (double)l->mAngleOuterCone * part;
+    /* COLLADA has one angle and an exponent; Assimp makes up an outer angle, often beyond a half turn. */
+    if (import_has_suffix(im->file, ".dae"))
+        out->outer = out->inner;
+}
+
+static bool add_light(importer *im, const struct aiNode *node, const double world[12], const struct aiLight *l) {
+    const double color[3] = {(double)l->mColorDiffuse.r, (double)l->mColorDiffuse.g, (double)l->mColorDiffuse.b};
+    const bool directional = l->mType == aiLightSource_DIRECTIONAL, spot = l->mType == aiLightSource_SPOT;
+    double place[3], along[3];
+    if (!directional && !spot && l->mType != aiLightSource_POINT) {
+        import_warn(im, "light '%.100s' is no point, spot or directional light; it is left out", l->mName.data);
+        return true;
+    }
+    model_light out = {.kind = directional ? VIT_LIGHT_DIRECTIONAL
+                               : spot      ? VIT_LIGHT_SPOT
+                                           : VIT_LIGHT_POINT,
+                       .direction = {0.0, -1.0, 0.0}};
+    take_names(node, out.name, out.parent);
+    take(&l->mPosition, place);
+    take(&l->mDirection, along);
+    memcpy(out.stated, color, sizeof color);
+    import_transform_point(world, place, out.position);
+    if (directional || spot)
+        import_transform_vector(world, along, out.direction);
+    if (spot)
+        read_cone(im, l, &out);
+    return import_add_light(im, &out, 180.001);
+}
+
+bool assimp_lights(assimp_scene *a, const struct aiNode *node, const double world[12]) {
+    for (unsigned i = 0; i < a->ai->mNumLights; i++)
+        if (strcmp(a->ai->mLights[i]->mName.data, node->mName.data) == 0 && !add_light(a->im, node, world, a->ai->mLights[i]))
+            return false;
+    return true;
+}

@@ -1,0 +1,71 @@
+/* assimp*.c: what the parts of Assimp's reader share. Private to them. */
+#ifndef VIT_BAKE_ASSIMP_SCENE_H
+#define VIT_BAKE_ASSIMP_SCENE_H
+
+#include "import/importer.h"
+#include <assimp/cfileio.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+/* What a mesh's polygons of five corners and more became: 3 vertices of the mesh a triangle. */
+typedef struct polygon_cut {
+    uint32_t *corner;
+    size_t triangles;
+} polygon_cut;
+
+/* A file that Assimp reads; importer.reader. */
+typedef struct assimp_scene {
+    importer *im;
+    const struct aiScene *ai;
+    bool inverse;                  /* the file's opacities are transparencies (assimp_transparency.c) */
+    char no_materials[SCENE_NAME]; /* material file that is not there; "" if all are */
+    bool warned_morph, warned_bones;
+    polygon_cut *cuts; /* a mesh of the file each */
+    unsigned cut_count;
+    unsigned lost_nodes; /* that were NULL in Assimp's tree */
+} assimp_scene;
+
+/* assimp_ply.c: refuses a PLY file whose header has no end or lines of no known kind: Assimp's reader never comes back from
+ * them. Every other file passes. */
+bool assimp_check_ply(importer *im);
+
+/* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
+struct aiFileIO assimp_files(assimp_scene *a);
+
+/* assimp_tree.c: takes NULL out of the lists of Assimp's tree, or refuses it. */
+bool assimp_mend_tree(assimp_scene *a);
+/* A mesh that no node leads to, in a tree that had holes: its node was lost. */
+bool assimp_is_stray(const assimp_scene *a, unsigned mesh);
+
+/* assimp_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted, those
+ * of five and more emptied, too, and their triangles kept in a->cuts. */
+bool assimp_triangulate(assimp_scene *a);
+void assimp_free_cuts(assimp_scene *a);
+/* assimp_cut.c: does so with a mesh; its indices are in range. */
+bool assimp_cut(assimp_scene *a, const struct aiMesh *mesh, polygon_cut *out);
+
+/* assimp_mesh.c: one more place of mesh `index`. */
+bool assimp_place(assimp_scene *a, unsigned index, const double world[12]);
+
+/* assimp_material.c: as import_format.material has it. */
+bool assimp_material(importer *im, material_use *use);
+/* `count` floats, if there are as many; keys are macros of three arguments, key, type, index. */
+bool assimp_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count);
+
+/* assimp_mtl.c: kind, lobe, glass and what they leave of the albedo, once colour, emission and alpha are known. False: a
+ * texture that is needed (strict), or out of memory. */
+bool assimp_shine(importer *im, material_use *use, const struct aiMaterial *ai);
+/* MTL's `illum` says that light goes through. */
+bool assimp_is_glass(const struct aiMaterial *ai);
+
+/* assimp_transparency.c: decides, before materials are read, how the file means transparency, and warns. */
+bool assimp_transparency(assimp_scene *a);
+/* 0..1, by that decision; and by the file's letter. */
+float assimp_opacity(const assimp_scene *a, const struct aiMaterial *ai);
+float assimp_stated_opacity(const struct aiMaterial *ai);
+
+/* assimp_lights.c: the cameras and lights that hang on `node`, whose place in the world is `world` (3 x 4). */
+bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double world[12]);
+bool assimp_lights(assimp_scene *a, const struct aiNode *node, const double world[12]);
+
+#endif

@@ -1,0 +1,153 @@
+/* One primitive (3.7.2): its attributes, and triangles by its mode. */
+#include "import/gltf/gltf_file.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, STRIP, FAN };
+
+static uint32_t mode_of(const json_t *primitive) {
+    uint32_t mode;
+    return gltf_index(primitive, "mode", &mode) ? mode : (uint32_t)TRIANGLES;
+}
+
+static uint64_t triangles_of(uint32_t mode, uint64_t corners) {
+    return mode == TRIANGLES ? corners / 3 : (mode == STRIP || mode == FAN) && corners > 2 ? corners - 2 : 0;
+}
+
+static uint64_t points_and_lines(uint32_t mode, uint64_t corners) {
+    return mode == POINTS ? corners : mode == LINES ? corners / 2 : mode == LINE_LOOP ? corners : corners > 0 ? corners - 1 : 0;
+}
+
+static uint64_t corners_stated(const gltf_file *g, const json_t *primitive) {
+    uint32_t index;
+    if (!gltf_index(primitive, "indices", &index))
+        (void)gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index);
+    return gltf_accessor_count(g, index);
+}
+
+uint64_t gltf_triangles_stated(const gltf_file *g, const json_t *primitive) {
+    return triangles_of(mode_of(primitive), corners_stated(g, primitive));
+}
+
+/* An attribute that the primitive may have; it must be as long as the positions. */
+static bool attribute(gltf_file *g, const gltf_part *part, const char *name, unsigned components, gltf_floats *out) {
+    uint32_t index;
+    if (!gltf_index(json_object_get(part->json, "attributes"), name, &index))
+        return true;
+    if (!gltf_read_floats(g, index, components, out))
+        return false;
+    return out->count >= part->position.count
+               ? true
+               : import_fail(g->im, "accessor %u has %u elements for %u vertices", index, out->count, part->position.count);
+}
+
+static bool read_attributes(gltf_file *g, gltf_part *part) {
+    char name[32];
+    uint32_t index;
+    (void)gltf_index(json_object_get(part->json, "attributes"), "POSITION", &index);
+    if (!gltf_read_floats(g, index, 3, &part->position) || !attribute(g, part, "NORMAL", 3, &part->normal) ||
+        !attribute(g, part, "COLOR_0", 3, &part->color))
+        return false;
+    for (unsigned i = 0; i < IMPORT_UV_SETS; i++) {
+        (void)snprintf(name, sizeof name, "TEXCOORD_%u", i);
+        if (!attribute(g, part, name, 2, &part->uv[i]))
+            return false;
+    }
+    for (unsigned i = 0; i < GLTF_JOINT_SETS; i++) {
+        (void)snprintf(name, sizeof name, "JOINTS_%u", i);
+        if (!attribute(g, part, name, 4, &part->joints[i]))
+            return false;
+        (void)snprintf(name, sizeof name, "WEIGHTS_%u", i);
+        if (!attribute(g, part, name, 4, &part->weights[i]))
+            return false;
+        if (!part->joints[i].at || !part->weights[i].at)
+            break;
+        part->joint_sets = i + 1;
+    }
+    return true;
+}
+
+/* Strips turn every second triangle round. */
+static bool make_corners(gltf_file *g, gltf_part *part, const uint32_t *index, uint64_t corners) {
+    const uint32_t mode = mode_of(part->json);
+    const uint64_t triangles = triangles_of(mode, corners);
+    uint32_t *to = triangles <= VIT_MAX_TRIANGLES ? calloc((size_t)triangles + 1, 3 * sizeof *to) : NULL;
+    part->corner = to;
+    if (!to)
+        return import_fail(g->im, "out of memory for %llu triangles", (unsigned long long)triangles);
+    for (uint64_t t = 0; t < triangles; t++) {
+        const uint64_t first = mode == TRIANGLES ? 3 * t : mode == FAN ? 0 : t, second = mode == TRIANGLES ? first + 1 : t + 1;
+        const uint64_t odd = mode == STRIP ? t & 1 : 0, at[3] = {first, second + odd, second + 1 - odd};
+        for (int k = 0; k < 3; k++)
+            *to++ = index ? index[at[k]] : (uint32_t)at[k];
+    }
+    part->triangles = (size_t)triangles;
+    return true;
+}
+
+static bool read_corners(gltf_file *g, gltf_part *part) {
+    uint32_t accessor, count = part->position.count, *index = NULL;
+    if (gltf_index(part->json, "indices", &accessor) && !gltf_read_indices(g, accessor, &index, &count))
+        return false;
+    const bool fine = make_corners(g, part, index, count);
+    free(index);
+    return fine;
+}
+
+/* Many primitives may share the vertices of all: each keeps to what is between its first and its last. */
+static void find_range(gltf_part *part) {
+    uint32_t first = UINT32_MAX, last = 0;
+    for (size_t i = 0; i < 3 * part->triangles; i++)
+        if (part->corner[i] < part->position.count) {
+            first = part->corner[i] < first ? part->corner[i] : first;
+            last = part->corner[i] > last ? part->corner[i] : last;
+        }
+    part->first = first <= last ? first : 0;
+    part->vertices = first <= last ? last - first + 1 : 0;
+    for (size_t i = 0; i < 3 * part->triangles; i++) /* those out of range stay so */
+        part->corner[i] = part->corner[i] < part->position.count ? part->corner[i] - part->first : GLTF_NONE;
+}
+
+static void choose_material(const gltf_file *g, gltf_part *part) {
+    uint32_t material;
+    part->material = gltf_index(part->json, "material", &material) ? material : g->material_count;
+}
+
+bool gltf_read_part(gltf_file *g, const json_t *primitive, gltf_part *out) {
+    const json_t *packed = gltf_extension(primitive, "KHR_draco_mesh_compression");
+    const uint32_t mode = mode_of(primitive);
+    uint32_t position;
+    *out = (gltf_part){.json = primitive};
+    if (!json_is_object(primitive))
+        return import_fail(g->im, "a primitive is none");
+    if (mode > FAN)
+        return import_fail(g->im, "a primitive has mode %u", mode);
+    if (!gltf_index(json_object_get(primitive, "attributes"), "POSITION", &position))
+        return gltf_remark_once(g, GLTF_SAID_POSITIONS, "primitives without positions are left out", "");
+    if (mode < TRIANGLES) {
+        g->im->m->not_triangles += points_and_lines(mode, corners_stated(g, primitive));
+        return true;
+    }
+    choose_material(g, out);
+    if (out->material > g->material_count)
+        return import_fail(g->im, "a primitive has material %u of %u", out->material, g->material_count);
+    if (!(packed ? gltf_read_draco(g, primitive, packed, out) : read_attributes(g, out) && read_corners(g, out)))
+        return false;
+    find_range(out);
+    return true;
+}
+
+void gltf_drop_part(gltf_part *part) {
+    gltf_floats *all[] = {&part->position, &part->normal, &part->color};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        gltf_drop_floats(all[i]);
+    for (size_t i = 0; i < IMPORT_UV_SETS; i++)
+        gltf_drop_floats(&part->uv[i]);
+    for (size_t i = 0; i < GLTF_JOINT_SETS; i++) {
+        gltf_drop_floats(&part->joints[i]);
+        gltf_drop_floats(&part->weights[i]);
+    }
+    free(part->corner);
+    *part = (gltf_part){0};
+}
