@@ -170,6 +170,128 @@ static void specular_and_glossiness_make_a_lobe(void **state) {
     model_free(&m);
 }
 
+static void what_emits_does_so_at_its_strength(void **state) {
+    static const struct {
+        const char *extension;
+        double want;
+    } cases[] = {{"", 0.5},
+                 {",\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":10}}", 5},
+                 {",\"extensions\":{\"KHR_materials_emissive_strength\":{}}", 0.5}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        model m;
+        char text[256];
+        (void)snprintf(text, sizeof text, "\"emissiveFactor\":[0.5,0,0.25]%s", cases[i].extension);
+        import_gltf(text, "", "", &m);
+        assert_true(near3(m.materials[0].emission, cases[i].want, 0, cases[i].want / 2) && m.materials[0].states_unit);
+        model_free(&m);
+    }
+}
+
+/* f0 = ((n - 1) / (n + 1))^2; what is reflected is missing from the albedo. */
+static void index_and_specular_factors_make_the_lobe_of_dielectrics(void **state) {
+#define SMOOTH PBR("\"metallicFactor\":0,\"roughnessFactor\":0.3")
+    const double f = (1.4 / 3.4) * (1.4 / 3.4);
+    model m;
+    (void)state;
+    import_gltf(SMOOTH ",\"extensions\":{\"KHR_materials_ior\":{\"ior\":2.4}}", "", "", &m);
+    assert_true(near3(m.materials[0].specular, f, f, f) && near3(m.materials[0].albedo, 1 - f, 1 - f, 1 - f));
+    model_free(&m);
+    import_gltf(SMOOTH
+                ",\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularColorFactor\":[1,0.5,30]}}",
+                "", "", &m);
+    assert_true(near3(m.materials[0].specular, 0.02, 0.01, 0.5)); /* of 0.04, 0.02 and at most 1 */
+    assert_true(near3(m.materials[0].albedo, 0.5, 0.5, 0.5));
+    model_free(&m);
+    import_gltf(SMOOTH ",\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}", "", "", &m);
+    assert_true(near3(m.materials[0].specular, 0, 0, 0) && near3(m.materials[0].albedo, 1, 1, 1));
+    model_free(&m);
+    put_texture(); /* its alpha is 0.7 on average */
+    import_gltf(SMOOTH ",\"extensions\":{\"KHR_materials_specular\":{\"specularTexture\":{\"index\":0}}}", IMAGE, "", &m);
+    assert_true(near3(m.materials[0].specular, 0.028, 0.028, 0.028));
+    model_free(&m);
+}
+
+static void a_black_factor_is_black(void **state) {
+    model m;
+    (void)state;
+    put_texture();
+    import_gltf(PBR("\"baseColorFactor\":[0,0,0,1],\"metallicFactor\":0,\"baseColorTexture\":{\"index\":0}"), IMAGE, "", &m);
+    assert_true(near3(m.materials[0].albedo, 0, 0, 0));
+    assert_string_equal(warnings, "");
+    model_free(&m);
+}
+
+/* 3.9.4 */
+static void a_cutoff_above_1_cuts_all_of_it_away(void **state) {
+    model m;
+    vit_text why;
+    (void)state;
+    import_gltf("\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5", "", "materials = ( { name = \"a\"; cutoff = 0.0; } );", &m);
+    assert_int_equal(m.triangles, 1);
+    model_free(&m);
+    import_gltf("\"alphaMode\":\"MASK\",\"alphaCutoff\":1", "", "", &m);
+    model_free(&m);
+    import_gltf("\"alphaCutoff\":1.5", "", "", &m); /* of an opaque one nothing */
+    model_free(&m);
+    import_gltf("\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5", "", "materials = ( { name = \"a\"; cutoff = 0.0; } );", &m);
+    model_free(&m);
+    assert_int_equal(import_in_scene("m.gltf", "", &m, &why), VIT_BAD_INPUT);
+    assert_non_null(strstr(why.text, "no triangle that is not transparent"));
+}
+
+/* Coordinates of set 0 are (0, 0), (1, 0), (0, 1); set 1 is not there. */
+static void a_transform_says_which_set_of_coordinates(void **state) {
+    static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, none[6] = {0}, fixed[6] = {0.1f, 0.2f, 0.1f, 0.2f, 0.1f, 0.2f};
+    uint8_t bin[84];
+    model m;
+    (void)state;
+    put_texture();
+    put_floats(bin, corners, 9);
+    put_floats(bin + 36, none, 6);
+    put_floats(bin + 60, fixed, 6);
+    put_bytes(FILE_OF("sets.bin"), bin, sizeof bin);
+    put(FILE_OF("sets.gltf"),
+        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "\"TEXCOORD_0\":1,\"TEXCOORD_1\":2},\"material\":0}]}],\"buffers\":[{\"byteLength\":84,\"uri\":\"sets.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24},{\"buffer\":0,"
+        "\"byteOffset\":60,\"byteLength\":24}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"
+        "\"VEC3\"},{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"},{\"bufferView\":2,\"componentType\":"
+        "5126,\"count\":3,\"type\":\"VEC2\"}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,"
+        "\"texCoord\":0,\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.25,0.5],\"texCoord\":1}}}}}]" IMAGE "}");
+    import_good(FILE_OF("sets.gltf"), &m);
+    for (size_t i = 0; i < m.vertices; i++)
+        assert_true(fabs((double)m.uv[2 * i] - 0.35) < 1e-6 && fabs((double)m.uv[2 * i + 1] - 0.7) < 1e-6);
+    model_free(&m);
+}
+
+/* A warning, and an error if strict. */
+static void what_is_not_done_is_said(void **state) {
+    static const struct {
+        const char *material, *more, *what;
+    } cases[] = {{"\"extensions\":{\"KHR_materials_unlit\":{}}", "", "unlit materials are lit like any other (material 'a'"},
+                 {"\"normalTexture\":{\"index\":0}", IMAGE, "normal maps are left out (material 'a'"},
+                 {"\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}", IMAGE, "emissive textures are not supported"},
+                 {"\"doubleSided\":true", ",\"extensionsUsed\":[\"KHR_materials_clearcoat\"]",
+                  "extension 'KHR_materials_clearcoat' is used and not read"},
+                 {"\"doubleSided\":true",
+                  ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}]}]",
+                  "animations are left out"}};
+    (void)state;
+    put_texture();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        model m;
+        import_gltf(cases[i].material, cases[i].more, "", &m);
+        assert_non_null(strstr(warnings, cases[i].what));
+        model_free(&m);
+        refuse(FILE_OF("m.gltf"), true, cases[i].what);
+    }
+    model m;
+    import_gltf("\"doubleSided\":true", ",\"extensionsUsed\":[\"KHR_materials_variants\"]", "", &m); /* changes nothing */
+    assert_string_equal(warnings, "");
+    model_free(&m);
+}
+
 static void the_dragon_is_of_amber(void **state) {
     model m;
     (void)state;
@@ -192,6 +314,12 @@ int main(void) {
         cmocka_unit_test(a_metal_lets_nothing_through),
         cmocka_unit_test(what_is_clear_by_alpha_as_well_is_glass_and_no_hole),
         cmocka_unit_test(specular_and_glossiness_make_a_lobe),
+        cmocka_unit_test(what_emits_does_so_at_its_strength),
+        cmocka_unit_test(index_and_specular_factors_make_the_lobe_of_dielectrics),
+        cmocka_unit_test(a_black_factor_is_black),
+        cmocka_unit_test(a_cutoff_above_1_cuts_all_of_it_away),
+        cmocka_unit_test(a_transform_says_which_set_of_coordinates),
+        cmocka_unit_test(what_is_not_done_is_said),
         cmocka_unit_test(the_dragon_is_of_amber),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);
