@@ -241,17 +241,17 @@ static void skins_that_are_none_are_refused(void **state) {
 #define LIGHTS                                                                                                                 \
     "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"intensity\":683,\"color\":[1,0.5,0],"           \
     "\"range\":9,\"spot\":{\"innerConeAngle\":0.1,\"outerConeAngle\":0.2}},{\"type\":\"point\"},{\"type\":\"ambient\"}]}}"
-#define LIT(n) "\"extensions\":{\"KHR_lights_punctual\":{\"light\":" #n "}}"
+#define LIT(n) "\"extensions\":{\"KHR_lights_punctual\":{\"light\":" n "}}"
+#define LIT_0 LIT("0")
 
 static void a_light_on_two_nodes_is_two_lights_named_by_node(void **state) {
     model m;
     (void)state;
-    import_nodes(
-        LIGHTS ",\"nodes\":[{\"mesh\":0},{\"name\":\"A\",\"translation\":[1,2,3]," LIT(
-            0) "},{\"name\":\"B\",\"rotation\":[0.70710678,0,0,0.70710678],\"children\":[3]},{" LIT(0) "},{" LIT(1) "},"
-                                                                                                                    "{\"name\":\"odd\"," LIT(
-                                                                                                                        2) "}]",
-        &m);
+    import_nodes(LIGHTS ",\"nodes\":[{\"mesh\":0},"
+                        "{\"name\":\"A\",\"translation\":[1,2,3]," LIT_0 "},"
+                        "{\"name\":\"B\",\"rotation\":[0.70710678,0,0,0.70710678],\"children\":[3]},"
+                        "{" LIT_0 "},{" LIT("1") "},{\"name\":\"odd\"," LIT("2") "}]",
+                 &m);
     assert_int_equal(m.light_count, 3);
     const model_light *a = model_light_named(&m, "A"), *b = model_light_named(&m, "B");
     assert_non_null(a);
@@ -264,7 +264,7 @@ static void a_light_on_two_nodes_is_two_lights_named_by_node(void **state) {
     assert_true(plain->kind == (int)VIT_LIGHT_POINT && near(plain->stated[0], 1) && plain->range == 0.0);
     assert_non_null(strstr(warnings, "light 'odd' is no point, spot or directional light"));
     model_free(&m);
-    refuse_nodes(LIGHTS ",\"nodes\":[{\"mesh\":0," LIT(3) "}]", "has light 3 of 3");
+    refuse_nodes(LIGHTS ",\"nodes\":[{\"mesh\":0," LIT("3") "}]", "has light 3 of 3");
 }
 
 static void a_camera_looks_along_its_nodes_minus_z(void **state) {

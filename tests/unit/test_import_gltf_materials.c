@@ -252,7 +252,8 @@ static void a_transform_says_which_set_of_coordinates(void **state) {
     put_floats(bin + 60, fixed, 6);
     put_bytes(FILE_OF("sets.bin"), bin, sizeof bin);
     put(FILE_OF("sets.gltf"),
-        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
         "\"TEXCOORD_0\":1,\"TEXCOORD_1\":2},\"material\":0}]}],\"buffers\":[{\"byteLength\":84,\"uri\":\"sets.bin\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24},{\"buffer\":0,"
         "\"byteOffset\":60,\"byteLength\":24}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"
