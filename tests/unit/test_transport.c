@@ -9,7 +9,15 @@
 
 #define PI 3.14159265358979324
 
-enum { EVENLY = 24 /* receivers along a wall's edge */, RAYS = 128, CELLS = 8192 };
+/* How much is asked of a search for light. */
+typedef struct effort {
+    uint32_t each; /* receivers along a wall's edge */
+    uint32_t rays; /* of each */
+    uint32_t cells, bounce_rays;
+} effort;
+
+enum { CELLS = 8192 };
+static const effort usual = {24, 128, CELLS, 128 * CELLS};
 
 typedef struct lab {
     room *r;
@@ -31,9 +39,9 @@ static void close_lab(lab *l) {
     room_drop(l->r);
 }
 
-/* EVENLY^2 places on each side that light reaches, each for a like part of its area. */
-static receiver *spread_receivers(const lab *l, uint32_t *count) {
-    const uint32_t each = EVENLY * EVENLY;
+/* evenly^2 places on each side that light reaches, each for a like part of its area. */
+static receiver *spread_receivers(const lab *l, uint32_t evenly, uint32_t *count) {
+    const uint32_t each = evenly * evenly;
     receiver *all = calloc(2 * (size_t)l->r->m.triangles * each, sizeof *all);
     assert_non_null(all);
     *count = 0;
@@ -41,18 +49,18 @@ static receiver *spread_receivers(const lab *l, uint32_t *count) {
         for (uint32_t i = 0; i < each && !side_is_dark(&l->r->g, s);
              i++) { /* row i has 2 i + 1 like triangles; their middles */
             const uint32_t row = (uint32_t)sqrt((double)i), k = i - row * row;
-            const float b1 = ((float)(k / 2) + (k % 2 ? 2.0f : 1.0f) / 3.0f) / (float)EVENLY;
-            const float down = ((float)row + (k % 2 ? 1.0f : 2.0f) / 3.0f) / (float)EVENLY;
+            const float b1 = ((float)(k / 2) + (k % 2 ? 2.0f : 1.0f) / 3.0f) / (float)evenly;
+            const float down = ((float)row + (k % 2 ? 1.0f : 2.0f) / 3.0f) / (float)evenly;
             all[(*count)++] = (receiver){.side = s, .b1 = b1, .b2 = down - b1};
         }
     return all;
 }
 
-/* Power of indirect light that comes to all walls in each state, over that of its light, 4 Pi W by the first channel's
- * intensity. */
-static void arriving(const lab *l, const transport_state *states, uint32_t state_count, uint32_t reflections, double *out) {
+/* Power of indirect light that comes to all walls in each state, W a channel. */
+static void arriving(const lab *l, const transport_state *states, uint32_t state_count, uint32_t reflections, effort e,
+                     double *out) {
     uint32_t count;
-    receiver *places = spread_receivers(l, &count);
+    receiver *places = spread_receivers(l, e.each, &count);
     float *irradiance = calloc((size_t)count * state_count * 3, sizeof *irradiance);
     assert_non_null(irradiance);
     const transport_input in = {.rays = &l->rays,
@@ -62,23 +70,26 @@ static void arriving(const lab *l, const transport_state *states, uint32_t state
                                 .states = states,
                                 .state_count = state_count,
                                 .reflections = reflections,
-                                .cells = CELLS,
-                                .receiver_rays = RAYS,
-                                .bounce_rays = 128 * CELLS};
+                                .cells = e.cells,
+                                .receiver_rays = e.rays,
+                                .bounce_rays = e.bounce_rays};
     transport_report report;
     vit_text why = {""};
     if (transport_find(&in, irradiance, &report, &why) != VIT_OK)
         fail_msg("%s", why.text);
-    for (uint32_t s = 0; s < state_count; s++)
-        for (uint32_t k = 0; k < 3; k++) {
-            double sum = 0.0;
-            for (uint32_t i = 0; i < count; i++)
-                sum += (double)irradiance[((size_t)i * state_count + s) * 3 + k] * (double)side_area(&l->r->g, places[i].side) /
-                       (EVENLY * EVENLY);
-            out[3 * s + k] = sum / (4.0 * PI * (double)states[s].lights[0].light.intensity[k]);
-        }
+    for (uint32_t k = 0; k < 3 * state_count; k++) {
+        out[k] = 0.0;
+        for (uint32_t i = 0; i < count; i++)
+            out[k] += (double)irradiance[(size_t)i * state_count * 3 + k] * (double)side_area(&l->r->g, places[i].side) /
+                      (e.each * e.each);
+    }
     free(irradiance);
     free(places);
+}
+
+/* What comes of a watt in a closed room whose walls have this albedo. */
+static double right_part(double albedo, uint32_t reflections) {
+    return albedo / (1 - albedo) * (reflections == TRANSPORT_CONVERGED ? 1 : 1 - pow(albedo, reflections));
 }
 
 /* Lights in the middle and near a corner, each alone. */
@@ -97,15 +108,13 @@ static void keeps_light(room *r, uint32_t reflections) {
         states[i] = (transport_state){&light[i], 1};
     }
     double got[6];
-    arriving(&l, states, 2, reflections, got);
+    arriving(&l, states, 2, reflections, usual, got);
     for (int i = 0; i < 6; i++) {
-        const double albedo = (double)albedos[i % 3];
-        double right = albedo / (1 - albedo);
-        if (reflections != TRANSPORT_CONVERGED)
-            right *= 1 - pow(albedo, reflections);
-        if (!(fabs(got[i] / right - 1) < 4e-3))
+        const double albedo = (double)albedos[i % 3], part = got[i] / (4 * PI * (i % 3 + 1)),
+                     right = right_part(albedo, reflections);
+        if (!(fabs(part / right - 1) < 4e-3))
             fail_msg("%u reflections, albedo %g, light %d: %.5f of the light comes, %.5f is right", reflections, albedo, i / 3,
-                     got[i], right);
+                     part, right);
     }
     close_lab(&l);
 }
@@ -123,6 +132,106 @@ static void what_stands_in_a_room_keeps_it_too(void **state) {
     room *r = room_closed(0.5f);
     room_quad(r, (const float[]){-0.3f, -1, -1}, (const float[]){0, 0, 1.4f}, (const float[]){0, 1.5f, 0}, WALLS);
     keeps_light(r, TRANSPORT_CONVERGED);
+}
+
+/* One state of a room in which all is painted; what comes is right within a part of it. */
+static void expect(const lab *l, const photons_light *lights, uint32_t count, const double watts[3], uint32_t reflections,
+                   effort e, double within) {
+    double got[3];
+    const transport_state only = {lights, count};
+    arriving(l, &only, 1, reflections, e, got);
+    for (int k = 0; k < 3; k++) {
+        const double part = got[k] / watts[k], right = right_part((double)albedos[k], reflections);
+        if (!(fabs(part / right - 1) < within))
+            fail_msg("albedo %g: %.5f of the light comes, %.5f is right", (double)albedos[k], part, right);
+    }
+}
+
+static void open_painted(lab *l, room *r) {
+    for (uint32_t m = 0; m < ROOM_MATERIALS; m++)
+        room_paint(r, m, albedos[0], albedos[1], albedos[2]);
+    open_lab(l, r);
+}
+
+static const double of_points[3] = {4 * PI, 8 * PI, 12 * PI}; /* W of room_point_light() */
+
+/* A lamp 3 cm over the floor: half of its light falls on what a cell or two are. */
+static void a_bright_spot_is_kept(void **state) {
+    (void)state;
+    lab l;
+    open_painted(&l, room_closed(0.5f));
+    const photons_light lamp = room_point_light(0.13f, -0.97f, -0.21f, 1);
+    expect(&l, &lamp, 1, of_points, TRANSPORT_CONVERGED, (effort){16, 64, CELLS, 64 * CELLS}, 0.02);
+    close_lab(&l);
+}
+
+/* Discs of light smaller than a cell, which most looks at the cell miss. What looks have found must not decide how many more a
+ * cell gets, or what they missed stays missed: half of the light. Few rays leave a look each to most cells: 8 % of noise. */
+static void small_spots_that_are_mostly_missed_are_kept(void **state) {
+    (void)state;
+    enum { BEAMS = 1024 };
+    static photons_light lamp[BEAMS]; /* large for a stack */
+    const double away = 0.2, outer = cos(atan(0.0085 / away)), inner = cos(atan(0.0076 / away));
+    double watts[3] = {0};
+    lab l;
+    open_painted(&l, room_closed(0.5f));
+    for (uint32_t i = 0; i < BEAMS; i++) {
+        vit_light *of = &lamp[i].light;
+        const uint32_t axis = i % 3;
+        const float sign = i / 3 % 2 ? 1.0f : -1.0f;
+        lamp[i] = room_point_light(0.0f, 0.0f, 0.0f, 1);
+        of->kind = VIT_LIGHT_SPOT;
+        of->position[axis] = sign * (float)(1 - away);
+        of->position[(axis + 1) % 3] = 1.9f * lattice_u(i, 1) - 0.95f;
+        of->position[(axis + 2) % 3] = 1.9f * lattice_v(i, 7) - 0.95f;
+        memset(of->direction, 0, sizeof of->direction);
+        of->direction[axis] = sign;
+        of->cos_outer = (float)outer;
+        of->spot_scale = (float)(1 / (inner - outer));
+        of->spot_offset = (float)(-outer / (inner - outer));
+        for (int k = 0; k < 3; k++)
+            watts[k] += (double)of->intensity[k] * 2 * PI * (1 - inner + (inner - outer) / 3);
+    }
+    expect(&l, lamp, BEAMS, watts, 1, (effort){34, 1, 4 * CELLS, 1}, 0.25);
+    close_lab(&l);
+}
+
+/* Few receivers with few rays know few of many cells, and rays of the last cells that are found meet others mostly: those that
+ * they know stand for all. Lamps that are dark take most of the looks at lights, for a shorter test. */
+static void rays_that_meet_unknown_cells_lose_no_light(void **state) {
+    (void)state;
+    enum { LAMPS = 64 };
+    photons_light lamp[LAMPS];
+    lab l;
+    open_painted(&l, room_closed(0.5f));
+    for (int i = 0; i < LAMPS; i++) {
+        lamp[i] = room_point_light(0.0f, 0.0f, 0.0f, 1);
+        for (int k = 0; k < 3 && i > 0; k++)
+            lamp[i].light.intensity[k] = 0.0f;
+    }
+    expect(&l, lamp, LAMPS, of_points, TRANSPORT_CONVERGED, (effort){1, 64, 8 * CELLS, 1}, 0.2);
+    close_lab(&l);
+}
+
+/* A plate that shines on both sides, 5 mm under the ceiling. */
+static void light_from_very_near_is_kept(void **state) {
+    (void)state;
+    lab l;
+    room *r = room_closed(0.5f);
+    room_quad(r, (const float[]){-0.2f, 0.995f, -0.2f}, (const float[]){0.4f, 0, 0}, (const float[]){0, 0, 0.4f}, WALLS);
+    open_painted(&l, r);
+    for (int k = 0; k < 3; k++)
+        r->materials[WALLS].emission[k] = (float)(k + 1);
+    r->materials[WALLS].lights = 1;
+    const vit_camera eye = {.eye = {0.9f, -0.9f, 0.9f}};
+    area_lights plate;
+    vit_text why = {""};
+    assert_int_equal(area_lights_find(&l.scene, &eye, 1, 1, &plate, &why), VIT_OK);
+    assert_true(fabs(plate.area - 0.32) < 1e-6);
+    const photons_light lamp = {.area = &plate};
+    expect(&l, &lamp, 1, plate.flux, 1, (effort){16, 128, CELLS / 4, 1}, 0.02);
+    area_lights_free(&plate);
+    close_lab(&l);
 }
 
 /* ---- receivers ---- */
@@ -154,39 +263,56 @@ static void weigh(const cell_corners *c, float b1, float b2, double w[3]) {
     w[0] = 1 - w[1] - w[2];
 }
 
+static const cell_corners whole = {{0, 1, 0}, {0, 0, 1}};
+
+/* Where a look-up ends: a cell or a part of one, its corners and those of the cell, and the weights between the former. */
+typedef struct looked_up {
+    const vit_receiver_cell *cell;
+    cell_corners at, of_cell;
+    double w[3];
+} looked_up;
+
+static looked_up look_up(const receivers *found, uint32_t side, float b1, float b2) {
+    const cells all = {.sides = found->sides};
+    const uint32_t parts = found->sides[side] >> VIT_SIDE_PARTS_SHIFT, first = found->sides[side] & VIT_SIDE_CELL,
+                   k = cells_at(&all, side, b1, b2);
+    looked_up r = {.cell = found->cells + k, .at = cells_within(&whole, parts, k - first)};
+    r.of_cell = r.at;
+    weigh(&r.at, b1, b2, r.w);
+    if (!VIT_RECEIVER_IS_DIVIDED(r.cell->split))
+        return r;
+    vit_u32 parted = (r.cell->split & ~VIT_RECEIVER_DIVIDED) << VIT_SIDE_PARTS_SHIFT;
+    const cells within = {.sides = &parted};
+    const uint32_t part = cells_at(&within, 0, (float)r.w[1], (float)r.w[2]);
+    r.at = cells_within(&r.at, parted >> VIT_SIDE_PARTS_SHIFT, part);
+    r.cell = found->cells + r.cell->receiver[0] + part;
+    weigh(&r.at, b1, b2, r.w);
+    return r;
+}
+
 /* The largest error of what is interpolated between receivers that have linear(), over what it changes by along a cell's edge:
  * how far receivers are from the corners that they stand for, in edges. */
 static double worst_of_linear(const lab *l, const receivers *found) {
-    const uint32_t sides = 2 * l->r->m.triangles;
-    cells c = {.sides = found->sides, .side_of = calloc(found->cell_count + 1u, sizeof *c.side_of), .count = found->cell_count};
     double worst = 0.0;
-    assert_non_null(c.side_of);
-    for (uint32_t s = 0; s < sides; s += 2) {
-        const uint32_t parts = c.sides[s] >> VIT_SIDE_PARTS_SHIFT, first = c.sides[s] & VIT_SIDE_CELL;
-        for (uint32_t k = 0; k < parts * parts; k++)
-            c.side_of[first + k] = s;
+    for (uint32_t s = 0; s < 2 * l->r->m.triangles; s += 2)
         for (uint32_t i = 0; i < 4096; i++) {
             float b1 = (float)(i % 64 + 0.5) / 64, b2 = (float)(i / 64 + 0.5) / 64;
             if (b1 + b2 >= 1) {
                 b1 = 1 - b1;
                 b2 = 1 - b2;
             }
-            const uint32_t cell = cells_at(&c, s, b1, b2);
-            const cell_corners corners = cells_corners(&c, cell);
-            double w[3], sum = 0.0, lo = INFINITY, hi = -INFINITY;
-            weigh(&corners, b1, b2, w);
+            const looked_up at = look_up(found, s, b1, b2);
+            double sum = 0.0, lo = INFINITY, hi = -INFINITY;
             for (int k = 0; k < 3; k++) {
-                const receiver *r = found->receivers + found->cells[cell].receiver[k];
-                const double at = linear(side_place(&l->r->g, s, corners.b1[k], corners.b2[k]));
+                const receiver *r = found->receivers + at.cell->receiver[k];
+                const double corner = linear(side_place(&l->r->g, s, at.of_cell.b1[k], at.of_cell.b2[k]));
                 assert_int_equal(r->side % 2, 0);
-                sum += w[k] * linear(side_place(&l->r->g, r->side, r->b1, r->b2));
-                lo = fmin(lo, at);
-                hi = fmax(hi, at);
+                sum += at.w[k] * linear(side_place(&l->r->g, r->side, r->b1, r->b2));
+                lo = fmin(lo, corner);
+                hi = fmax(hi, corner);
             }
             worst = fmax(worst, fabs(sum - linear(side_place(&l->r->g, s, b1, b2))) / (hi - lo));
         }
-    }
-    free(c.side_of);
     return worst;
 }
 
@@ -219,9 +345,108 @@ static void receivers_of_a_plane_interpolate_what_is_linear(void **state) {
     close_lab(&l);
 }
 
+/* Light that changes much near a place of the floor, and hardly elsewhere. */
+static vit_status look_at_a_spot(void *user, const receiver *places, uint32_t count, float *irradiance, vit_text *why) {
+    const lab *l = user;
+    (void)why;
+    for (uint32_t i = 0; i < count; i++) {
+        const vec3 way = vec3_sub(side_place(&l->r->g, places[i].side, places[i].b1, places[i].b2), (vec3){0.3f, -1.0f, 0.2f});
+        irradiance[i] = 1.0f / (vec3_dot(way, way) + 0.02f);
+    }
+    return VIT_OK;
+}
+
+/* What a receiver has, from one of its own or from those that it hangs between. */
+static double *values_of(const receivers *found) {
+    double *value = calloc(found->count + 1u, sizeof *value);
+    assert_non_null(value);
+    for (uint32_t i = 0; i < found->count; i++)
+        value[i] = (double)unit_float(pcg(i));
+    for (uint32_t i = 0; i < found->hanging_count; i++) {
+        const receiver_hanging *h = found->hanging + i;
+        assert_true(found->receivers[h->receiver].hangs);
+        value[h->receiver] = value[h->from[0]] * (1 - (double)h->weight) + value[h->from[1]] * (double)h->weight;
+    }
+    return value;
+}
+
+static double value_at(const receivers *found, const double *value, uint32_t side, float b1, float b2) {
+    const looked_up at = look_up(found, side, b1, b2);
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++)
+        sum += at.w[k] * value[at.cell->receiver[k]];
+    return sum;
+}
+
+/* The largest jump of values across edges of cells. */
+static double worst_jump(const receivers *found, const double *value, uint32_t side) {
+    const uint32_t n = found->sides[side] >> VIT_SIDE_PARTS_SHIFT;
+    const float off = 2e-6f;
+    double worst = 0.0;
+    for (uint32_t i = 1; i < n; i++)
+        for (uint32_t k = 1; k < 512; k++) {
+            const float a = (float)i / (float)n, b = (float)k / 512 * (1 - a), c = (float)k / 512 * a;
+            const double across[3] = {value_at(found, value, side, a - off, b) - value_at(found, value, side, a + off, b),
+                                      value_at(found, value, side, b, a - off) - value_at(found, value, side, b, a + off),
+                                      value_at(found, value, side, a - c - off, c) -
+                                          value_at(found, value, side, a - c + off, c)};
+            for (int e = 0; e < 3; e++)
+                worst = fmax(worst, fabs(across[e]));
+        }
+    return worst;
+}
+
+/* Receivers with values of no order: neighbours that are divided less often say what lies on common edges, so nothing jumps.
+ * And what is linear comes back, within the parts, too. */
+static void divided_cells_fit_together(void **state) {
+    (void)state;
+    lab l;
+    open_lab(&l, room_closed(0.5f));
+    const tracks t = {.cameras = (vit_camera *)(uintptr_t)look_about()};
+    const receivers_input in = {.rays = &l.rays,
+                                .geometry = &l.r->g,
+                                .tracks = &t,
+                                .frames = 6,
+                                .width = 64,
+                                .height = 64,
+                                .size = 2.0f,
+                                .spacing = 12.0f,
+                                .most = 100000,
+                                .look = look_at_a_spot,
+                                .user = &l,
+                                .columns = 1};
+    receivers found;
+    vit_text why = {""};
+    uint32_t divided[VIT_RECEIVER_PARTS + 1] = {0};
+    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    for (uint32_t i = 0; i < found.cell_count; i++)
+        if (VIT_RECEIVER_IS_DIVIDED(found.cells[i].split))
+            divided[found.cells[i].split & ~VIT_RECEIVER_DIVIDED]++;
+    print_message("%u, %u and %u cells in 2, 4 and 8 parts each way, %u of %u receivers hang\n", divided[2], divided[4],
+                  divided[8], found.hanging_count, found.count);
+    assert_true(divided[2] > 0 && divided[4] > 0 && found.hanging_count > 0);
+    double *value = values_of(&found);
+    for (uint32_t s = 0; s < 2 * l.r->m.triangles; s += 2) {
+        const double jump = worst_jump(&found, value, s);
+        if (!(jump < 0.01))
+            fail_msg("side %u: values jump by %g between cells", s, jump);
+    }
+    assert_true(worst_of_linear(&l, &found) < 0.03);
+    free(value);
+    receivers_free(&found);
+    close_lab(&l);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_closed_room_keeps_its_light),
-                                       cmocka_unit_test(what_stands_in_a_room_keeps_it_too),
-                                       cmocka_unit_test(receivers_of_a_plane_interpolate_what_is_linear)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_closed_room_keeps_its_light),
+        cmocka_unit_test(what_stands_in_a_room_keeps_it_too),
+        cmocka_unit_test(a_bright_spot_is_kept),
+        cmocka_unit_test(small_spots_that_are_mostly_missed_are_kept),
+        cmocka_unit_test(rays_that_meet_unknown_cells_lose_no_light),
+        cmocka_unit_test(light_from_very_near_is_kept),
+        cmocka_unit_test(receivers_of_a_plane_interpolate_what_is_linear),
+        cmocka_unit_test(divided_cells_fit_together),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
