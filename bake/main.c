@@ -134,6 +134,18 @@ static void explain_effects(const pipeline_packed *p, const effect_costs *all) {
     }
 }
 
+/* What there is, and what of it is kept and asked for. */
+static void explain_radiosity(const pipeline_packed *p) {
+    const live_saving *l = &p->live.saving;
+    const vit_scene *s = &p->plan.scene;
+    printf("  indirect light by live radiosity: %u patches with %u points, %u bounces%s\n", s->patches, s->patch_points,
+           s->bounces, s->bounces < PLAN_ALL_BOUNCES ? "" : " and more");
+    printf("    receivers %u, of which some frame looks up %u, a frame %.0f (one set for %u frame%s); these see %u patches\n",
+           l->receivers, l->kept, l->looked_up, s->looked_frames, s->looked_frames == 1 ? "" : "s", l->patches);
+    printf("    of %u words that say what receivers see %u are kept, and a frame reads %.0f\n", l->words, s->gather_words,
+           l->gathered);
+}
+
 /* Which method, and why where the baker has chosen it. */
 static void explain_indirect(const bake *b) {
     const pipeline *p = &b->pipeline;
@@ -143,6 +155,8 @@ static void explain_indirect(const bake *b) {
     if (s->effects & VIT_BIT(BASIS))
         printf("  indirect light by the basis: %u receivers, %u lights that move, %u bounces%s\n", s->receivers,
                s->basis_lights, s->bounces, s->bounces < PLAN_ALL_BOUNCES ? "" : " and more");
+    if (s->effects & VIT_BIT(RADIOSITY))
+        explain_radiosity(&b->packed);
 }
 
 static vit_status explain(bake *b, vit_text *why) {

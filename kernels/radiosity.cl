@@ -93,28 +93,60 @@ kernel void patch_reflect(global const vit_scene *scene, global const vit_patch_
 #endif
 
 #if VIT_WITH(RADIOSITY)
-/* Irradiance of a receiver: of light that stays, and of what it sees; even and odd words apart. */
-kernel void gather_patches(global const vit_scene *scene, global const vit_gather_row *rows, global const uint *words,
-                           global const vit_receiver *receivers, global const float *radiosity,
-                           global float *relit WORK_PARAMETERS) {
-    uint receiver = (uint)get_global_id(0);
-    if (receiver >= scene->receivers)
-        return;
-    global const uint *at = words + rows[receiver].first;
-    uint count = rows[receiver].count;
-    float scale = rows[receiver].scale;
+/* Four sums of columns of weight 1, two a word: column i belongs to sum i % 4. */
+static inline float4 gather_ones(global const uint *at, uint count, global const float *radiosity) {
+    float4 a = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), b = a, c = a, d = a;
+    uint i = 0;
+    for (; i + 4 <= count; i += 4) {
+        uint first = at[i / 2], second = at[i / 2 + 1];
+        a += vload4(first & 0xffffu, radiosity);
+        b += vload4(first >> 16, radiosity);
+        c += vload4(second & 0xffffu, radiosity);
+        d += vload4(second >> 16, radiosity);
+    }
+    if (i < count)
+        a += vload4(at[i / 2] & 0xffffu, radiosity);
+    if (i + 1 < count)
+        b += vload4(at[i / 2] >> 16, radiosity);
+    if (i + 2 < count)
+        c += vload4(at[i / 2 + 1] & 0xffffu, radiosity);
+    return (a + b) + (c + d);
+}
+
+/* Two sums of weighted columns, even and odd ones. */
+static inline float4 gather_weighted(global const uint *at, uint count, global const float *radiosity) {
     float4 even = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), odd = even;
-    WORK_BEGIN
-    WORK_ADD(evaluations, count);
-    for (uint i = 0; i + 1 < count; i += 2) {
+    uint i = 0;
+    for (; i + 2 <= count; i += 2) {
         even = radiosity_add(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
         odd = radiosity_add(odd, (float)(at[i + 1] >> 16), vload4(at[i + 1] & 0xffffu, radiosity));
     }
-    if (count & 1u)
-        even = radiosity_add(even, (float)(at[count - 1] >> 16), vload4(at[count - 1] & 0xffffu, radiosity));
+    if (i < count)
+        even = radiosity_add(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
+    return even + odd;
+}
+
+/* Irradiance of a receiver that the frame looks up: of light that stays, and of what it sees. */
+kernel void gather_patches(global const vit_scene *scene, uint frame, global const vit_gather_row *rows,
+                           global const uint *words, global const uint *looked_up, global const vit_receiver *receivers,
+                           global const float *radiosity, global float *relit WORK_PARAMETERS) {
+    uint receiver = (uint)get_global_id(0);
+    if (receiver >= scene->receivers)
+        return;
+    if (!(looked_up[frame / scene->looked_frames * (scene->receivers / 32u) + receiver / 32u] >> receiver % 32u & 1u)) {
+        vstore4(VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), receiver, relit);
+        return;
+    }
+    global const vit_gather_row *row = rows + receiver;
+    global const uint *at = words + row->first;
     global const float *still = receivers[receiver].irradiance;
-    even = radiosity_add(VIT_FLOAT4(still[0], still[1], still[2], 0.0f), scale, even + odd);
-    vstore4(even, receiver, relit);
+    WORK_BEGIN
+    WORK_ADD(evaluations, row->ones + row->weighted);
+    WORK_ADD(bytes, sizeof(vit_gather_row) + sizeof(vit_receiver) + 4u * VIT_GATHER_WORDS(row));
+    float4 ones = gather_ones(at, row->ones, radiosity);
+    float4 e =
+        radiosity_add(ones, 1.0f / VIT_GATHER_ONE, gather_weighted(at + (row->ones + 1u) / 2u, row->weighted, radiosity));
+    vstore4(radiosity_add(VIT_FLOAT4(still[0], still[1], still[2], 0.0f), row->scale, e), receiver, relit);
     WORK_END
 }
 #endif

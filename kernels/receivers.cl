@@ -62,9 +62,10 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
 #endif
 
 /* Irradiance, W/m2, of the lanes' places p, at barycentric weights b1, b2 of a side of a triangle (back: -1 for the back); 0
- * elsewhere. Neighbours mostly share a cell: each is read once. */
+ * elsewhere. Neighbours mostly share a cell: each is read once. looked_up: with VIT_EFFECT_REACH, gets the receivers' bits. */
 static inline lv3 receivers_light(global const uint *sides, global const uint *cells, global const vit_receiver_split *splits,
-                                  global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p) {
+                                  global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p,
+                                  volatile global uint *looked_up) {
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
     lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     lu kind = l_gather_u(cells, at.index * 4 + 3);
@@ -88,6 +89,8 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
         }
         for (int part = 0; part < 2; part++) {
             if (l_any(own)) {
+                for (int k = 0; VIT_EFFECT_REACH && k < 3; k++)
+                    atomic_or(looked_up + of[k] / 32u, 1u << of[k] % 32u);
                 lv3 e = lv3_scale(lv3_load(light + (size_t)of[0] * 4), at.w0);
                 e = lv3_along(e, lv3_load(light + (size_t)of[1] * 4), at.w1);
                 e = lv3_along(e, lv3_load(light + (size_t)of[2] * 4), at.w2);

@@ -119,7 +119,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         }
         if (VIT_EFFECT_RECEIVERS)
             lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_LIVE ? relit : receivers,
-                                             hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position),
+                                             hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position,
+                                             VIT_EFFECT_REACH ? reached + scene->materials + VIT_REACHED_MORE : reached),
                              indirect, n, first);
     } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING))))
         /* Else all this stands there already. */

@@ -29,7 +29,8 @@ vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vi
 vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vit_pack_check_BGRP, vit_pack_check_BWRD,
     vit_pack_check_BCOE, vit_pack_check_BFRM;
 /* pack_check_radiosity.c: patches, and what receivers see of them. */
-vit_pack_check vit_pack_check_PATC, vit_pack_check_PPNT, vit_pack_check_GROW, vit_pack_check_GATH, vit_pack_check_XFER;
+vit_pack_check vit_pack_check_PATC, vit_pack_check_PPNT, vit_pack_check_GROW, vit_pack_check_GATH, vit_pack_check_LOOK,
+    vit_pack_check_XFER;
 /* Irradiance of any receiver by a light of the basis with an intensity of 1, at most; *still: by all other light, W/m2. Both 0
  * without receivers. */
 double vit_pack_basis_bound(const vit_pack *p, double *still);

@@ -62,16 +62,18 @@ vit_status vit_pack_check_GROW(const vit_pack *p, vit_text *why) {
     vit_u32 end = 0;
     for (vit_u32 i = 0; s->patches > 0 && i < s->receivers; i++) {
         const vit_gather_row *r = VIT_RECORD(vit_gather_row, rows, i);
-        if (r->first != end || r->count > s->gather_words - end)
-            return vit_pack_refuse(why, "section GROW: receiver %u: %u words from %u on, expected from %u on, of %u", i,
-                                   r->count, r->first, end, s->gather_words);
-        if (!in_range(r->scale, 0.0f, 1.0f) || r->pad != 0)
-            return vit_pack_refuse(why, "section GROW: receiver %u: scale must be in 0..1, and padding 0", i);
-        const double scale = r->scale;
-        const vit_u32 first = end;
-        uint64_t sum = 0;
-        end += r->count;
-        for (vit_u32 k = first; k < end; k++)
+        if (r->first != end || r->ones > VIT_MAX_COLUMNS || r->weighted > s->gather_words ||
+            VIT_GATHER_WORDS(r) > s->gather_words - end)
+            return vit_pack_refuse(why,
+                                   "section GROW: receiver %u: %u columns and %u words from %u on, expected from %u on, of %u",
+                                   i, r->ones, r->weighted, r->first, end, s->gather_words);
+        if (!in_range(r->scale, 0.0f, 1.0f))
+            return vit_pack_refuse(why, "section GROW: receiver %u: scale must be in 0..1", i);
+        const double scale = (double)r->scale / VIT_GATHER_ONE;
+        uint64_t sum = (uint64_t)r->ones * VIT_GATHER_ONE;
+        end += VIT_GATHER_WORDS(r);
+        const vit_u32 weighted = r->weighted;
+        for (vit_u32 k = end - weighted; k < end; k++)
             sum += *VIT_RECORD(vit_u32, words, k) >> 16;
         if ((double)sum * scale > MOST_WEIGHT)
             return vit_pack_refuse(why, "section GROW: receiver %u: weights sum to %g", i, (double)sum * scale);
@@ -79,14 +81,32 @@ vit_status vit_pack_check_GROW(const vit_pack *p, vit_text *why) {
     return VIT_OK;
 }
 
+/* Columns, of rows that have been checked; and no half of a word in use that none has. */
 vit_status vit_pack_check_GATH(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
+    const vit_gather_row *rows = p->section[VIT_SECTION_GROW];
     const vit_u32 *words = p->section[VIT_SECTION_GATH], columns = VIT_PATCH_STRIDE(s) + s->patch_points;
-    for (vit_u32 i = 0; i < s->gather_words; i++) {
-        const vit_u32 column = *VIT_RECORD(vit_u32, words, i) & 0xffffu;
-        if (column >= columns)
-            return vit_pack_refuse(why, "section GATH: word %u: column %u of %u", i, column, columns);
+    vit_u32 k = 0;
+    for (vit_u32 i = 0; s->patches > 0 && i < s->receivers; i++) {
+        const vit_gather_row *r = VIT_RECORD(vit_gather_row, rows, i);
+        const vit_u32 ones = (r->ones + 1u) / 2u, end = k + VIT_GATHER_WORDS(r), paired = k + ones;
+        const bool odd = r->ones % 2u != 0;
+        for (; k < end; k++) {
+            const vit_u32 word = *VIT_RECORD(vit_u32, words, k), high = k < paired ? word >> 16 : 0;
+            if ((word & 0xffffu) >= columns || high >= columns)
+                return vit_pack_refuse(why, "section GATH: word %u: column %u of %u", k,
+                                       (word & 0xffffu) >= columns ? word & 0xffffu : high, columns);
+            if (odd && k + 1 == paired && high != 0)
+                return vit_pack_refuse(why, "section GATH: word %u: padding is not 0", k);
+        }
     }
+    return VIT_OK;
+}
+
+/* Every word is 32 receivers. */
+vit_status vit_pack_check_LOOK(const vit_pack *p, vit_text *why) {
+    (void)p;
+    (void)why;
     return VIT_OK;
 }
 

@@ -21,6 +21,7 @@ enum {
     MAX_RECEIVERS = 1 << 24,
     MAX_BASIS = 1 << 28,
     MAX_GATHER = 1 << 28, /* words: a row's first and count together within 32 bits */
+    MAX_LOOKED = 1 << 28, /* words */
     MAX_TRANSFER = 1 << 30,
     MAX_SUMS = 2 * VIT_MAX_COLUMNS / VIT_TRANSFER_CHUNK + 1,
     MAX_SLICES = 4096,
@@ -61,6 +62,7 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"patches", s->patches, 0, VIT_MAX_COLUMNS - 16},
         {"patch_points", s->patch_points, 0, VIT_MAX_COLUMNS - VIT_PATCH_STRIDE(s)},
         {"gather_words", s->gather_words, 0, MAX_GATHER},
+        {"looked_frames", s->looked_frames, 0, s->frames},
         {"transfer_words", s->transfer_words, 0, MAX_TRANSFER},
         {"transfer_rank", s->transfer_rank, 0, VIT_TRANSFER_MOST_RANK},
         {"transfer_sums", s->transfer_sums, 0, MAX_SUMS},
@@ -79,6 +81,9 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         return vit_fail(why, VIT_BAD_INPUT, "copies must be 1, 2, 4, 8 or 16, got %u", s->copies);
     if (s->receivers % VIT_BASIS_GROUP != 0)
         return vit_fail(why, VIT_BAD_INPUT, "receivers must be a multiple of %u, got %u", VIT_BASIS_GROUP, s->receivers);
+    if ((uint64_t)VIT_LOOKED_SETS(s) * s->receivers > (uint64_t)MAX_LOOKED * 32)
+        return vit_fail(why, VIT_BAD_INPUT, "looked_frames: %u sets of %u receivers have more than %u words",
+                        VIT_LOOKED_SETS(s), s->receivers, MAX_LOOKED);
     if (s->patch_points % 16 != 0 || s->transfer_rank % VIT_TRANSFER_ROWS != 0)
         return vit_fail(why, VIT_BAD_INPUT, "patch_points and transfer_rank must be multiples of 16, got %u and %u",
                         s->patch_points, s->transfer_rank);

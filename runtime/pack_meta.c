@@ -62,7 +62,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return all_zero(s->pad, 2) ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
+    return s->pad == 0 ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -103,6 +103,8 @@ static vit_status check_receivers(const vit_scene *s, vit_text *why) {
     if ((s->patches > 0) != live || (s->patch_points > 0) != live || lights != live || (s->gather_words > 0 && !live))
         return vit_pack_refuse(why, "section META: %u patches, %u points and %u words contradict the effect RADIOSITY",
                                s->patches, s->patch_points, s->gather_words);
+    if ((s->looked_frames > 0) != live)
+        return vit_pack_refuse(why, "section META: looked_frames %u contradicts the effect RADIOSITY", s->looked_frames);
     for (vit_u32 i = 0; i < 64; i++)
         if ((s->live[i / 32] >> i % 32 & 1) && i >= s->lights)
             return vit_pack_refuse(why, "section META: light %u of %u is live", i, s->lights);

@@ -35,8 +35,8 @@
     X(transfer_sum, ON(TRANSFER), FIRST, PER_ROW, ONCE, W(reflected), B(transfer), B(sums), B(reflected))                      \
     X(patch_reflect, ON(TRANSFER), FIRST, PER_COLUMN, ONCE, W(radiosity), B(scene), B(patch_points), B(reflected),             \
       B(radiosity))                                                                                                            \
-    X(gather_patches, ON(RADIOSITY), FIRST, PER_RECEIVER, ONCE, W(relit), B(scene), B(gather_rows), B(gather_words),           \
-      B(receivers), B(radiosity), B(relit), ARGS_WORK)                                                                         \
+    X(gather_patches, ON(RADIOSITY), FIRST, PER_RECEIVER, ONCE, W(relit), B(scene), V(frame), B(gather_rows), B(gather_words), \
+      B(looked_up), B(receivers), B(radiosity), B(relit), ARGS_WORK)                                                           \
     X(visibility, ALWAYS, EACH, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),   \
       B(hit_distance), ARGS_WORK)                                                                                              \
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \

@@ -69,6 +69,7 @@ typedef struct vit_launch {
     X(patch_points, ON(RADIOSITY), PPNT, s->patch_points * sizeof(vit_patch_point))                                            \
     X(gather_rows, ON(RADIOSITY), GROW, s->receivers * sizeof(vit_gather_row))                                                 \
     X(gather_words, ON(RADIOSITY), GATH, (uint64_t)s->gather_words * 4)                                                        \
+    X(looked_up, ON(RADIOSITY), LOOK, (uint64_t)VIT_LOOKED_SETS(s) * (s->receivers / 32) * 4)                                  \
     X(transfer, ON(TRANSFER), XFER, (uint64_t)s->transfer_words * 4)                                                           \
     X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
       VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
@@ -115,7 +116,7 @@ typedef struct vit_launch {
     X(counters, ALWAYS, NONE, 3 * VIT_COUNTER_COUNT * 4)                                                                       \
     X(faults, ON(PHOTONS), NONE, VIT_FAULT_WORDS * 4)                                                                          \
     X(work, ON_WORK, NONE, VIT_MAX_PASSES *VIT_WORK_COUNT * 8)                                                                 \
-    X(reached, ON_REACH, NONE, (s->materials + (uint64_t)VIT_REACHED_MORE) * 4)                                                \
+    X(reached, ON_REACH, NONE, (uint64_t)VIT_REACHED_WORDS(s) * 4)                                                             \
     X(framebuffer, ALWAYS, NONE, (((uint64_t)s->height - 1) * l->pitch + s->width) * vit_format_bytes(l->format))
 
 #define VIT_SECTION_NONE VIT_SECTION_COUNT

@@ -7,6 +7,7 @@
  *    index and 28 bytes of a photon a test against a node, index and photon (or bucket) an evaluation, side, cell and its
  *    receivers a hit; a vector's number, of two bytes, a receiver;
  *  - a sample looks for near area lights among the points of all sets (kernels/direct.cl, lit_near);
+ *  - words of receivers' rows, with the records of those that are looked up, are added up on the device;
  *  - traversal of the BVH counts nothing: its order is the packets' own. Nor do counters, the bits that samples set, the chunks
  *    of the root's list, the pixels of dots.
  * In scope: scene s, limits l, the pass's counts w, and the sizes z. Change what a pass reads or writes, and change its row. */
@@ -43,8 +44,7 @@
     X(transfer_partial, z->coded + 16 * z->stride + z->mixed + z->sums)                                                        \
     X(transfer_sum, z->sums + 12 * z->stride)                                                                                  \
     X(patch_reflect, 12 * z->stride + (4 + 12) * z->points + 2 * 16 * (z->stride + z->points))                                 \
-    X(gather_patches,                                                                                                          \
-      (sizeof(vit_gather_row) + sizeof(vit_receiver) + 16) * z->receivers + (4 + 16) * w[VIT_WORK_evaluations])                \
+    X(gather_patches, z->receivers / 8 + 16 * z->receivers + 16 * w[VIT_WORK_evaluations])                                     \
     X(estimate_all, (4 + z->position + 4 + z->baked + 12) * z->samples + z->evaluation * w[VIT_WORK_evaluations])              \
     X(estimate_sparse, (4 + z->position + 4 + z->baked + 36) * z->coarse + z->evaluation * w[VIT_WORK_evaluations])            \
     X(interpolate, (4 + z->position + 4 + z->lamps + z->baked + 12) * z->samples + 36 * z->coarse + z->samples / 4)            \
@@ -216,6 +216,6 @@ void vit_work_read(const uint32_t *words, const vit_scene *s, const vit_launch *
         for (uint32_t k = 0; k < VIT_WORK_COUNT; k++)
             w[k] = (uint64_t)at[2 * k + 1] << 32 | at[2 * k];
         const sizes all = of_rounds(&z, vit_pass_rounds(&vit_passes[p], l));
-        w[VIT_WORK_bytes] = pass_bytes(vit_passes[p].name, &all, w);
+        w[VIT_WORK_bytes] += pass_bytes(vit_passes[p].name, &all, w);
     }
 }

@@ -229,7 +229,7 @@ static void receive(const host_lab_received *r, const float *light, const float 
         const li found = L_AS_INT(L_LOAD(triangle + i)), hit = L_NE(found, L_I((int)VIT_NONE));
         const lf b1 = L_LOAD(VIT_PLANE(places, 3, n) + i), b2 = L_LOAD(VIT_PLANE(places, 4, n) + i);
         lv3_store_planes(receivers_light(r->sides, (const uint *)r->cells, r->splits, light, hit, found, L_LOAD(back + i), b1,
-                                         b2, lv3_load_planes(places, n, i)),
+                                         b2, lv3_load_planes(places, n, i), NULL),
                          irradiance, n, i);
     }
 }

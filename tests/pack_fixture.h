@@ -27,8 +27,9 @@ enum {
     FIXTURE_STRIDE = 32,
     FIXTURE_PATCH_POINTS = 48, /* two a patch, and eight to fill up */
     FIXTURE_COLUMNS = FIXTURE_STRIDE + FIXTURE_PATCH_POINTS,
-    FIXTURE_SEEN = 3, /* of these by each second receiver */
+    FIXTURE_SEEN = 3, /* words of each second receiver: three columns of weight 1, and one of another */
     FIXTURE_GATHER = FIXTURE_RECEIVERS / 2 * FIXTURE_SEEN,
+    FIXTURE_LOOKED = FIXTURE_FRAMES * FIXTURE_RECEIVERS / 32, /* words: a set a frame */
     FIXTURE_RANK = 16,
     FIXTURE_SPARSE = 96, /* words: a pair of slots in each of two panels */
     FIXTURE_TRANSFER = 20 + 3 * 32 + 4 + 32 + FIXTURE_SPARSE + 2 * 256 + 96 + 32 + 3 * 256,
@@ -62,6 +63,7 @@ typedef struct pack_fixture {
     vit_patch_point patch_points[FIXTURE_PATCH_POINTS];
     vit_gather_row gather_rows[FIXTURE_RECEIVERS];
     vit_u32 gather_words[FIXTURE_GATHER];
+    vit_u32 looked_up[FIXTURE_LOOKED];
     vit_u32 transfer[FIXTURE_TRANSFER];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
@@ -343,10 +345,14 @@ static inline void fixture_patches(pack_fixture *f) {
                                                                          .reflect = {1, 0.5f, VIT_MAX_REFLECT}}
                                                      : (vit_patch_point){.normal = {0, 0, -1}};
     for (vit_u32 i = 0; i < FIXTURE_RECEIVERS; i++)
-        f->gather_rows[i] =
-            (vit_gather_row){.first = (i + 1) / 2 * FIXTURE_SEEN, .count = i % 2 ? 0 : FIXTURE_SEEN, .scale = 0x1p-18f};
-    for (vit_u32 i = 0; i < FIXTURE_GATHER; i++)
-        f->gather_words[i] = (65535 - i) << 16 | i % FIXTURE_COLUMNS;
+        f->gather_rows[i] = (vit_gather_row){
+            .first = (i + 1) / 2 * FIXTURE_SEEN, .ones = i % 2 ? 0 : 3, .weighted = i % 2 ? 0 : 1, .scale = 0x1p-9f};
+    for (vit_u32 i = 0; i < FIXTURE_GATHER; i++) {
+        const vit_u32 high[FIXTURE_SEEN] = {(i + 7) % FIXTURE_COLUMNS, 0, 65535 - i};
+        f->gather_words[i] = high[i % FIXTURE_SEEN] << 16 | i % FIXTURE_COLUMNS;
+    }
+    for (vit_u32 i = 0; i < FIXTURE_LOOKED; i++)
+        f->looked_up[i] = i * 0x9e3779b1u;
 }
 
 /* fixture_make_basis() with live radiosity of the second light for the basis. */
@@ -358,6 +364,7 @@ static inline void fixture_make_live(pack_fixture *f) {
     f->scene.patches = FIXTURE_PATCHES;
     f->scene.patch_points = FIXTURE_PATCH_POINTS;
     f->scene.gather_words = FIXTURE_GATHER;
+    f->scene.looked_frames = 1;
     f->scene.live[0] = 2;
     f->scene.transfer_words = FIXTURE_TRANSFER;
     f->scene.transfer_rank = FIXTURE_RANK;
@@ -401,8 +408,8 @@ static inline pack_sections fixture_sections(const pack_fixture *f) {
             [VIT_SECTION_RSPL] = f->splits,       [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
             [VIT_SECTION_BWRD] = f->words,        [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
             [VIT_SECTION_PATC] = f->patches,      [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
-            [VIT_SECTION_GATH] = f->gather_words, [VIT_SECTION_XFER] = f->transfer,     [VIT_SECTION_PHOT] = f->photons,
-            [VIT_SECTION_GOLD] = f->golds,
+            [VIT_SECTION_GATH] = f->gather_words, [VIT_SECTION_LOOK] = f->looked_up,    [VIT_SECTION_XFER] = f->transfer,
+            [VIT_SECTION_PHOT] = f->photons,      [VIT_SECTION_GOLD] = f->golds,
         }};
 }
 

@@ -43,7 +43,7 @@ typedef struct image {
     vit_patch *patches;
     vit_patch_point *patch_points;
     vit_gather_row *gather_rows;
-    vit_u32 *gather_words;
+    vit_u32 *gather_words, *looked_up;
     vit_u32 *transfer;
     vit_photon *photons;
     vit_gold *golds;
@@ -83,6 +83,7 @@ static inline image image_of(const pack_fixture *f) {
     im.patch_points = section(&im, VIT_SECTION_PPNT);
     im.gather_rows = section(&im, VIT_SECTION_GROW);
     im.gather_words = section(&im, VIT_SECTION_GATH);
+    im.looked_up = section(&im, VIT_SECTION_LOOK);
     im.transfer = section(&im, VIT_SECTION_XFER);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);

@@ -114,12 +114,16 @@ static uint32_t doubled(uint32_t want, uint32_t most) {
 /* What the frame's rays reached; words: room for the runtime's. */
 static vit_status note_reached(bounds_input *in, const run *r, const vit_statistics *t, uint32_t index, uint32_t *words,
                                vit_text *why) {
+    const vit_scene *s = in->scene;
+    const size_t receivers = s->receivers / 32;
     uint64_t tests = 0;
     for (uint32_t p = 0; p < t->pass_count && t->work_count > 0; p++)
         tests += t->pass_work[p][VIT_WORK_cutout_tests];
-    const vit_status status = vit_reached(r->o.v, words, in->scene->materials + VIT_REACHED_MORE, why);
-    if (status == VIT_OK)
-        effects_note(in->reached, in->scene->materials, words, tests, index);
+    const vit_status status = vit_reached(r->o.v, words, VIT_REACHED_WORDS(s), why);
+    if (status == VIT_OK && in->reached)
+        effects_note(in->reached, s->materials, words, tests, index);
+    if (status == VIT_OK && in->looked_up)
+        memcpy(in->looked_up + index * receivers, words + s->materials + VIT_REACHED_MORE, receivers * sizeof *words);
     return status;
 }
 
@@ -129,8 +133,9 @@ static vit_status measure_frames(bounds_input *in, uint32_t *next, uint32_t *nod
     run r = {0};
     if (in->progress)
         in->progress(in->user, "frames", (double)*next / s->frames);
-    uint32_t *words = in->reached ? calloc(s->materials + VIT_REACHED_MORE, sizeof *words) : NULL;
-    vit_status status = in->reached && !words ? out_of_memory(why) : VIT_OK;
+    const bool records = in->reached || in->looked_up;
+    uint32_t *words = records ? calloc(VIT_REACHED_WORDS(s), sizeof *words) : NULL;
+    vit_status status = records && !words ? out_of_memory(why) : VIT_OK;
     if (status == VIT_OK)
         status = run_begin(&r, in, in->sections, VIT_FORMAT_XRGB8888, words != NULL, why);
     while (status == VIT_OK && *next < s->frames) {

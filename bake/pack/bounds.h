@@ -13,6 +13,7 @@ typedef struct bounds_input {
     vit_scene *scene;         /* slices and bounds are filled in */
     vit_gold *gold;           /* scene->frames records, filled in */
     effects_reached *reached; /* EFFECTS_RECORDS(scene->materials) zeroed records, filled in; NULL: not asked for */
+    uint32_t *looked_up;      /* frames x receivers / 32 words, filled in: bits of receivers; NULL: not asked for */
     uint32_t device, threads; /* as in vit_open_info */
     int all_formats;          /* golden hashes of RGB565 and RGBA32F too: two more runs */
     bounds_progress_fn *progress;

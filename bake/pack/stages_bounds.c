@@ -35,6 +35,7 @@ void stages_point(bake *b) {
                  [VIT_SECTION_PPNT] = out->live.points,
                  [VIT_SECTION_GROW] = out->live.rows,
                  [VIT_SECTION_GATH] = out->live.words,
+                 [VIT_SECTION_LOOK] = out->live.looked,
                  [VIT_SECTION_XFER] = out->live.transfer.words,
                  [VIT_SECTION_CELL] = out->cells.cells,
                  [VIT_SECTION_EMIT] = out->area_lights,
@@ -70,22 +71,44 @@ vit_status stage_frames(bake *b, vit_text *why) {
     return VIT_OK;
 }
 
-/* Plays the path: bounds and golden hashes; what rays met settles the effects. */
+/* Live radiosity: receivers that no view sample looks up are not kept. */
+static vit_status keep_looked_up(bake *b, vit_text *why) {
+    pipeline_packed *out = b->out;
+    vit_scene *s = &out->plan.scene;
+    const vit_status status = live_keep(&out->live, s->receivers, b->bounds.looked_up, s->frames, why);
+    s->gather_words = out->live.word_count;
+    s->looked_frames = out->live.looked_frames;
+    stages_point(b);
+    return status;
+}
+
+/* Plays the path: bounds and golden hashes; what rays met settles the effects, and what samples looked up is kept. */
 vit_status stage_bounds(bake *b, vit_text *why) {
     pipeline_packed *out = b->out;
     vit_scene *s = &out->plan.scene;
+    const bool is_live = s->effects & VIT_BIT(RADIOSITY);
+    const size_t bits = is_live ? (size_t)s->frames * (s->receivers / 32) : 0;
     effects_reached *reached = calloc(EFFECTS_RECORDS(s->materials), sizeof *reached);
-    if (!reached)
+    uint32_t *looked_up = malloc((bits + 1) * sizeof *looked_up);
+    if (!reached || !looked_up || (is_live && live_look_at_all(&out->live, s->receivers, s->frames, why) != VIT_OK)) {
+        free(reached);
+        free(looked_up);
         return out_of_memory(why);
+    }
+    s->looked_frames = out->live.looked_frames;
     stages_point(b);
+    b->bounds.looked_up = is_live ? looked_up : NULL;
     if ((s->effects | out->plan.effects.forced_off) & (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS)))
         b->bounds.reached = reached; /* else there is nothing to find out */
-    const vit_status status = bounds_measure(&b->bounds, why);
+    vit_status status = bounds_measure(&b->bounds, why);
     for (uint32_t i = 0; i < s->materials && status == VIT_OK; i++)
         reached[i].how |= out->met && out->met[i] ? EFFECTS_REACHED_BAKED : 0;
     if (status == VIT_OK)
         effects_settle(s, out->model, out->plan.materials, reached, &out->plan.effects);
+    if (status == VIT_OK && is_live)
+        status = keep_looked_up(b, why);
     free(reached);
+    free(looked_up);
     return status;
 }
 

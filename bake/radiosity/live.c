@@ -93,6 +93,7 @@ void live_free(live *l) {
     free(l->points);
     free(l->rows);
     free(l->words);
+    free(l->looked);
     coded_free(&l->transfer);
     *l = (live){0};
 }

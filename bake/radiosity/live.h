@@ -22,20 +22,36 @@ typedef struct live_input {
     void *user;
 } live_input;
 
+/* What need not be kept, or computed, as no view sample asks for it. */
+typedef struct live_saving {
+    uint32_t receivers, words;  /* that there were, */
+    uint32_t kept;              /* receivers that are looked up in some frame */
+    double looked_up, gathered; /* receivers, words in a frame, mean */
+    uint32_t patches;           /* that these see */
+} live_saving;
+
 typedef struct live {
     vit_patch *patches;      /* section PATC */
     vit_patch_point *points; /* section PPNT; a multiple of 16 */
     vit_gather_row *rows;    /* section GROW: a receiver */
     vit_u32 *words;          /* section GATH */
+    vit_u32 *looked;         /* section LOOK; at first one set for all frames, of all receivers */
     coded transfer;          /* section XFER; empty with one reflection */
     uint32_t patch_count, point_count, word_count;
-    double unequal;     /* form_factors.unequal */
-    double spectral[3]; /* transfer_matrix.spectral */
+    uint32_t looked_frames; /* that share a set */
+    live_saving saving;     /* by live_keep() */
+    double unequal;         /* form_factors.unequal */
+    double spectral[3];     /* transfer_matrix.spectral */
 } live;
 
 /* VIT_FAILED: out of memory. VIT_BAD_INPUT: the matrix is too large, or all reflections are too many. On failure there is
  * nothing to free. */
 vit_status live_find(const live_input *in, live *out, vit_text *why);
+/* One set of all receivers for all `frames`: before it is known what they look up. VIT_FAILED: out of memory. */
+vit_status live_look_at_all(live *l, uint32_t receiver_count, uint32_t frames, vit_text *why);
+/* Keeps what frames look up: `looked`, and rows of receivers that any frame looks up. bits: frames x receiver_count / 32 words,
+ * a bit a receiver. VIT_FAILED: out of memory. */
+vit_status live_keep(live *l, uint32_t receiver_count, const vit_u32 *bits, uint32_t frames, vit_text *why);
 void live_free(live *l);
 
 #endif

@@ -6,7 +6,7 @@
 
 #define BATCH 1024u  /* receivers between two times that their hits are noted */
 #define FINE_HITS 3u /* of a patch, from which on a receiver sees its points rather than the whole */
-#define MOST_CODE 65535.0
+#define MOST_CODE 65535u
 
 typedef struct seen {
     uint32_t patch, point; /* VIT_NONE: nothing that reflects */
@@ -20,7 +20,7 @@ typedef struct looking {
     uint32_t first;
     seen *hits;       /* receiver_rays a receiver */
     uint32_t *column; /* of one row */
-    double *weight;
+    double *hits_of;  /* a column: hits, or what is left of them in mirrors */
 } looking;
 
 /* The patch's point that stands for the place: the nearest that faces the same way, if one does. */
@@ -70,7 +70,7 @@ static void look(void *user, uint32_t item) {
     qsort(hits, rays, sizeof *hits, by_place);
 }
 
-/* A receiver's hits, which are sorted, as columns and weights. Returns how many. */
+/* A receiver's hits, which are sorted, as columns and how many. Returns how many. */
 static uint32_t to_columns(const looking *w, const seen *hits) {
     const uint32_t rays = w->in->receiver_rays, stride = codec_stride(w->out->patch_count);
     uint32_t count = 0;
@@ -82,28 +82,40 @@ static uint32_t to_columns(const looking *w, const seen *hits) {
             const uint32_t to = fine ? stride + hits[k].point : hits[k].patch;
             if (k == i || to != w->column[count - 1]) {
                 w->column[count] = to;
-                w->weight[count++] = 0.0;
+                w->hits_of[count++] = 0.0;
             }
-            w->weight[count - 1] += (double)hits[k].weight / rays;
+            w->hits_of[count - 1] += (double)hits[k].weight;
         }
     }
     return count;
+}
+
+/* A column whose weight is not 1 hit, as often as its weight takes. */
+static void note_weighted(uint32_t column, double hits, vit_gather_row *row, live *out) {
+    for (uint32_t left = (uint32_t)(hits * VIT_GATHER_ONE + 0.5); left > 0;) {
+        const uint32_t code = left < MOST_CODE ? left : MOST_CODE;
+        out->words[out->word_count++] = code << 16 | column;
+        row->weighted++;
+        left -= code;
+    }
 }
 
 /* The next receiver's row. */
 static void note(const looking *w, const seen *hits, uint32_t index, live *out) {
     const uint32_t count = to_columns(w, hits);
     vit_gather_row *row = out->rows + index;
-    double most = 0.0;
-    for (uint32_t i = 0; i < count; i++)
-        most = w->weight[i] > most ? w->weight[i] : most;
-    *row = (vit_gather_row){.first = out->word_count, .scale = (float)(most / MOST_CODE)};
+    *row = (vit_gather_row){.first = out->word_count, .scale = 1.0f / (float)w->in->receiver_rays};
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t code = (uint32_t)(w->weight[i] / most * MOST_CODE + 0.5);
-        if (code > 0)
-            out->words[out->word_count++] = code << 16 | w->column[i];
+        if (w->hits_of[i] != 1.0)
+            continue;
+        if (row->ones++ % 2u == 0)
+            out->words[out->word_count++] = w->column[i];
+        else
+            out->words[out->word_count - 1] |= w->column[i] << 16;
     }
-    row->count = out->word_count - row->first;
+    for (uint32_t i = 0; i < count; i++)
+        if (w->hits_of[i] != 1.0)
+            note_weighted(w->column[i], w->hits_of[i], row, out);
 }
 
 /* Room for another batch's words. */
@@ -127,9 +139,9 @@ vit_status live_rows(const live_input *in, const patch_set *p, live *out, vit_te
                  .out = out,
                  .hits = malloc((size_t)BATCH * rays * sizeof *w.hits),
                  .column = malloc(rays * sizeof *w.column),
-                 .weight = malloc(rays * sizeof *w.weight)};
+                 .hits_of = malloc(rays * sizeof *w.hits_of)};
     out->rows = calloc(in->rows + 1u, sizeof *out->rows);
-    bool fine = w.hits && w.column && w.weight && out->rows;
+    bool fine = w.hits && w.column && w.hits_of && out->rows;
     for (; w.first < count && fine; w.first += BATCH) {
         const uint32_t batch = count - w.first < BATCH ? count - w.first : BATCH;
         fine = make_room(&w, &room, out);
@@ -143,6 +155,6 @@ vit_status live_rows(const live_input *in, const patch_set *p, live *out, vit_te
         out->rows[i].first = out->word_count;
     free(w.hits);
     free(w.column);
-    free(w.weight);
+    free(w.hits_of);
     return fine ? VIT_OK : bake_fail(why, VIT_FAILED, "live radiosity: out of memory");
 }

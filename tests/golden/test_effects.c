@@ -239,7 +239,7 @@ static void still_lights_need_no_basis_and_no_relight(void **state) {
     assert_int_equal(requirements("basis-still").effects & VIT_BIT(RELIGHT), 0);
 }
 
-#define OF_PATCHES " patches patch_points gather_rows gather_words radiosity "
+#define OF_PATCHES " patches patch_points gather_rows gather_words looked_up radiosity "
 #define OF_TRANSFER " transfer sums reflected "
 
 /* Receivers are the basis's; a second reflection has its own buffers and passes, and so has a rank. */

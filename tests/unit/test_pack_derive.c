@@ -154,6 +154,7 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
                   LIMIT(basis_coefficients, 0, 1 << 28),
                   LIMIT(patches, 0, 65520),
                   LIMIT(gather_words, 0, 1 << 28),
+                  LIMIT(looked_frames, 0, 100),
                   LIMIT(transfer_words, 0, 1 << 30),
                   LIMIT(transfer_sums, 0, 513)};
 #undef LIMIT

@@ -10,7 +10,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 8", im->header->version = 8)                                                             \
+    X(header, newer_version, "version 9", im->header->version = 9)                                                             \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -78,7 +78,7 @@
     X(META, caustics_without_photons, "without", EFFECTS(0, BIT(PHOTONS) | BIT(TRACED)))                                       \
     X(META, directional_without_lights, "DIRECTIONAL without LIGHTS",                                                          \
       EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))                                           \
-    X(META, reserved_words_in_use, "padding", im->scene->pad[1] = 1)                                                           \
+    X(META, reserved_words_in_use, "padding", im->scene->pad = 1)                                                              \
     X(EMIT, position_is_nan, "point 3: position", im->emitters[3].position[1] = NAN)                                           \
     X(EMIT, normal_too_short, "point 0: position is not finite, or normal", im->emitters[0].normal[1] = -0.5f)                 \
     X(EMIT, direction_too_long, "point 16", im->emitters[16].position[1] = 2)                                                  \

@@ -5,8 +5,8 @@
 #include <float.h>
 #include <math.h>
 
-/* The fixture has 20 patches (32 columns), 48 points, two a patch; 512 receivers, every second of which sees 3 columns: 768
- * words; a coded matrix of rank 16 with 2 sums. */
+/* The fixture has 20 patches (32 columns), 48 points, two a patch; 512 receivers, every second of which sees 4 columns in 3
+ * words: 768; two sets of receivers that are looked up, a frame each; a coded matrix of rank 16 with 2 sums. */
 #define NO_RADIOSITY EFFECTS(0, BIT(INDIRECT) | BIT(RADIOSITY) | BIT(TRANSFER) | BIT(LOW_RANK)), im->scene->most_reflected = 0
 #define META_FAULTS(X)                                                                                                         \
     X(META, huge_patches, "patches must be in 0..65520", im->scene->patches = 65521)                                           \
@@ -26,6 +26,11 @@
     X(META, patches_without_the_effect, "512 receivers, 27 cells and 2 splits contradict", NO_RADIOSITY)                       \
     X(META, no_patches, "0 patches, 48 points and 768 words contradict", im->scene->patches = 0)                               \
     X(META, no_points, "20 patches, 0 points and 768 words contradict", im->scene->patch_points = 0)                           \
+    X(META, frames_that_share_no_set, "looked_frames 0 contradicts", im->scene->looked_frames = 0)                             \
+    X(META, more_frames_share_a_set_than_there_are, "looked_frames must be in 0..2", im->scene->looked_frames = 3)             \
+    X(META, sets_without_live_radiosity, "looked_frames 1 contradicts", NO_RADIOSITY,                                          \
+      im->scene->effects |= BIT(INDIRECT) | BIT(BASIS), im->scene->patches = im->scene->patch_points = 0,                      \
+      im->scene->live[0] = im->scene->gather_words = 0)                                                                        \
     X(META, no_light_is_live, "20 patches, 48 points and 768 words contradict", im->scene->live[0] = 0)                        \
     X(META, a_light_that_is_not_there_is_live, "light 2 of 2 is live", im->scene->live[0] = 6)                                 \
     X(META, the_last_of_64_lights_is_live, "light 63 of 2 is live", im->scene->live[1] = 1u << 31)                             \
@@ -37,6 +42,7 @@
     X(PATC, a_patch_more, "META counts 21 records", ADD(patches, 1))                                                           \
     X(PPNT, sixteen_points_less, "META counts 32 records", im->scene->patch_points = 32)                                       \
     X(GATH, a_word_more, "META counts 769 records", ADD(gather_words, 1))                                                      \
+    X(LOOK, one_set_for_both_frames, "META counts 16 records", im->scene->looked_frames = 2)                                   \
     X(XFER, a_word_more, "META counts 1657 records", ADD(transfer_words, 1))
 
 #define RECORD_FAULTS(X)                                                                                                       \
@@ -57,15 +63,19 @@
     X(PPNT, reflects_less_than_nothing, "point 4: reflect", im->patch_points[4].reflect[1] = -1)                               \
     X(PPNT, padding_in_use, "point 5: padding", im->patch_points[5].pad0 = 1)                                                  \
     X(PPNT, padding_at_the_end_in_use, "point 5: padding", im->patch_points[5].pad1 = 1)                                       \
-    X(GROW, a_row_within_another, "receiver 2: 3 words from 2 on, expected from 3 on", im->gather_rows[2].first = 2)           \
-    X(GROW, words_beyond_the_last, "receiver 510: 4 words from 765 on", im->gather_rows[510].count = 4)                        \
-    X(GROW, a_count_that_wraps, "receiver 0: 4294967295 words", im->gather_rows[0].count = 0xffffffff)                         \
+    X(GROW, a_row_within_another, "receiver 2: 3 columns and 1 words from 2 on, expected from 3 on",                           \
+      im->gather_rows[2].first = 2)                                                                                            \
+    X(GROW, words_beyond_the_last, "receiver 510: 3 columns and 2 words from 765 on", im->gather_rows[510].weighted = 2)       \
+    X(GROW, columns_beyond_the_last, "receiver 510: 5 columns and 1 words from 765 on", im->gather_rows[510].ones = 5)         \
+    X(GROW, a_count_that_wraps, "receiver 0: 3 columns and 4294967295 words", im->gather_rows[0].weighted = 0xffffffff)        \
+    X(GROW, columns_that_wrap, "receiver 0: 4294967295 columns", im->gather_rows[0].ones = 0xffffffff)                         \
     X(GROW, negative_scale, "receiver 1: scale", im->gather_rows[1].scale = -0x1p-18f)                                         \
     X(GROW, scale_of_nan, "receiver 1: scale", im->gather_rows[1].scale = NAN)                                                 \
-    X(GROW, padding_in_use, "receiver 7: scale must be in 0..1, and padding 0", im->gather_rows[7].pad = 1)                    \
-    X(GROW, more_than_there_is_to_see, "receiver 0: weights sum to 1.49", im->gather_rows[0].scale = 0x1p-17f)                 \
+    X(GROW, more_than_there_is_to_see, "receiver 0: weights sum to 1.01", im->gather_rows[0].scale = 0x1p-8f)                  \
     X(GATH, column_beyond_the_last, "word 767: column 80 of 80", im->gather_words[767] = 80)                                   \
     X(GATH, last_of_16_bits, "word 5: column 65535 of 80", im->gather_words[5] |= 0xffff)                                      \
+    X(GATH, second_column_beyond_the_last, "word 3: column 80 of 80", im->gather_words[3] = 80u << 16)                         \
+    X(GATH, padding_in_use, "word 4: padding", im->gather_words[4] = 1u << 16)                                                 \
     X(XFER, another_codec, "codec 5", im->transfer[1] = 5)                                                                     \
     X(XFER, a_codec_that_has_no_rank, "codec 0, 20 patches, rank 16", im->transfer[1] = 0)                                     \
     X(XFER, patches_that_meta_does_not_have, "19 patches, rank 16 and 2 sums, META says 20", im->transfer[2] = 19)             \
@@ -84,7 +94,9 @@
 /* What is just inside the limits must pass: X(name, change made to `im`). */
 #define LIMITS(X)                                                                                                              \
     X(no_receiver_sees_a_patch, memset(im->gather_words, 0, FIXTURE_GATHER * sizeof *im->gather_words))                        \
-    X(the_last_column, im->gather_words[0] = 65535u << 16 | 79)                                                                \
+    X(the_last_column, im->gather_words[2] = 65535u << 16 | 79)                                                                \
+    X(both_last_columns, im->gather_words[0] = 79u << 16 | 79)                                                                 \
+    X(receivers_that_no_frame_looks_up, memset(im->looked_up, 0, FIXTURE_LOOKED * sizeof *im->looked_up))                      \
     X(every_light_is_live, im->scene->live[0] = 3)                                                                             \
     X(black_points, memset(im->patch_points[0].albedo, 0, sizeof im->patch_points[0].albedo))                                  \
     X(points_without_weight, im->patch_points[0].weight = im->patch_points[1].weight = 0)                                      \

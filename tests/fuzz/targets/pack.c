@@ -295,9 +295,12 @@ static void follow_gather(const vit_pack *p) {
     const vit_gather_row *rows = p->section[VIT_SECTION_GROW];
     const vit_u32 *words = p->section[VIT_SECTION_GATH];
     for (vit_u32 i = 0; s->patches > 0 && i < s->receivers; i++)
-        for (vit_u32 k = 0; k < rows[i].count; k++)
-            FUZZ_HOLDS(rows[i].first + k < s->gather_words &&
-                       (words[rows[i].first + k] & 0xffffu) < VIT_PATCH_STRIDE(s) + s->patch_points);
+        for (vit_u32 k = 0, ones = (rows[i].ones + 1) / 2; k < VIT_GATHER_WORDS(&rows[i]); k++) {
+            FUZZ_HOLDS(rows[i].first + k < s->gather_words);
+            const vit_u32 word = words[rows[i].first + k], columns = VIT_PATCH_STRIDE(s) + s->patch_points;
+            FUZZ_HOLDS((word & 0xffffu) < columns && (k >= ones || word >> 16 < columns));
+        }
+    FUZZ_HOLDS(s->patches == 0 || (s->frames - 1) / s->looked_frames < VIT_LOOKED_SETS(s));
 }
 
 /* Parts of a code, and what is sparse in it, as transfer_product.clh does. */

@@ -24,6 +24,7 @@ static const char codes[][5] = {
     "PATC",
     "GROW",
     "GATH",
+    "LOOK",
     "XFER",
 };
 
