@@ -132,7 +132,7 @@ $(B)/%.o: %.c
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
 $(B)/%.o: %.cc
 	@mkdir -p $(@D)
-	$(CXX) -std=c++17 -Wall -Wextra -Werror -ffp-contract=off -MMD -MP -Ibake $(OPT) $(CXXFLAGS) -c $< -o $@
+	$(CXX) -std=c++17 -Wall -Wextra -Werror -ffp-contract=off -MMD -MP -Ibake $(OPT) -fno-sanitize=vptr $(CXXFLAGS) -c $< -o $@
 
 $(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(HOST_OBJECTS) $(if $(filter 0,$(OPENCL)),,$(B)/kernel_sources.o)
 	@rm -f $@

@@ -10,11 +10,10 @@ typedef struct instance {
     const mesh_part *part;
     const double *world; /* 3 x 4 */
     bool mirrored;       /* its determinant is negative */
-    float *position;     /* 3 a vertex of the part, in the world */
     uint32_t *vertex;    /* a vertex of the part: its index in the model, VIT_NONE so far */
-    uint32_t *corner;    /* 3 a surviving triangle: vertices of the part */
-    size_t triangles;
-    float *smooth; /* 9 a surviving triangle; NULL if the part has normals */
+    uint8_t *kept;       /* a bit a triangle of the part: it survives */
+    size_t triangles;    /* those that do */
+    float *smooth;       /* 9 a surviving triangle; NULL if the part has normals */
 } instance;
 
 void import_multiply(const double a[12], const double b[12], double out[12]) {
@@ -42,49 +41,68 @@ static shape triangle_shape(const float *a, const float *b, const float *c) {
     return square < FLT_MIN ? SHAPE_FLAT : SHAPE_GOOD;
 }
 
-static void place_vertices(importer *im, instance *in) {
-    for (size_t i = 0; i < in->part->vertices; i++) {
-        const float *v = in->part->position.at + in->part->position.stride * i;
-        const double x = (double)v[0], y = (double)v[1], z = (double)v[2];
-        for (size_t k = 0; k < 3; k++) {
-            const double *row = in->world + 4 * k;
-            const double far = fmax(fmax(fabs(row[0] * x), fabs(row[1] * y)), fabs(row[2] * z));
-            if (far <= (double)IMPORT_FAR) /* what lies farther out is dropped */
-                im->m->step = fmax(im->m->step, far * 0x1p-23);
-            in->position[3 * i + k] = (float)(row[0] * x + row[1] * y + row[2] * z + row[3]);
-        }
-        in->vertex[i] = VIT_NONE;
-    }
+/* Vertex `v` of the part in the world. */
+static void place_vertex(const instance *in, uint32_t v, float out[3]) {
+    const float *at = in->part->position.at + in->part->position.stride * v;
+    const double x = (double)at[0], y = (double)at[1], z = (double)at[2], *m = in->world;
+    for (size_t k = 0; k < 3; k++, m += 4)
+        out[k] = (float)(m[0] * x + m[1] * y + m[2] * z + m[3]);
+}
+
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* How far apart floats lie at this vertex's place from the file's origin. */
+static void note_step(model *m, const instance *in, uint32_t v) {
+    const float *at = in->part->position.at + in->part->position.stride * v;
+    const double *row = in->world;
+    double far = 0.0;
+    for (size_t k = 0; k < 3; k++, row += 4)
+        for (size_t i = 0; i < 3; i++)
+            far = larger(fabs(row[i] * (double)at[i]), far);
+    m->step = larger(far * 0x1p-23, m->step);
+}
+
+/* Corners of triangle `t`, turned round where the world is mirrored. */
+static void corners_of(const instance *in, size_t t, uint32_t v[3]) {
+    const uint32_t *corner = in->part->corner + 3 * t;
+    v[0] = corner[0];
+    v[1] = corner[in->mirrored ? 2 : 1];
+    v[2] = corner[in->mirrored ? 1 : 2];
 }
 
 /* A vertex so far out that areas would not fit a float; infinity and NaN are told of otherwise. */
-static bool is_far(importer *im, const instance *in, const uint32_t v[3]) {
-    bool far = false;
+static bool is_far(importer *im, const float p[9]) {
+    float far = 0.0f;
     for (int k = 0; k < 9; k++) {
-        const float x = fabsf(in->position[3 * (size_t)v[k / 3] + (size_t)(k % 3)]);
+        const float x = fabsf(p[k]);
         if (!isfinite(x))
             return false;
-        if (x > IMPORT_FAR) {
-            far = true;
-            im->farthest = fmax(im->farthest, (double)x);
-        }
+        far = x > far ? x : far;
     }
-    return far;
+    if (far > IMPORT_FAR)
+        im->farthest = larger((double)far, im->farthest);
+    return far > IMPORT_FAR;
 }
 
 /* Keeps the triangle if it has an area, counts it otherwise. */
-static void sift_triangle(importer *im, instance *in, const uint32_t *corner) {
+static void sift_triangle(importer *im, instance *in, size_t t) {
     const uint32_t vertices = in->part->vertices;
-    const uint32_t v[3] = {corner[0], corner[in->mirrored ? 2 : 1], corner[in->mirrored ? 1 : 2]};
+    uint32_t v[3];
+    float p[9];
+    corners_of(in, t, v);
     if (v[0] >= vertices || v[1] >= vertices || v[2] >= vertices) {
         im->bad_index++;
         return;
     }
-    if (is_far(im, in, v)) {
+    for (int k = 0; k < 3; k++)
+        place_vertex(in, v[k], p + 3 * k);
+    if (is_far(im, p)) {
         im->too_far++;
         return;
     }
-    switch (triangle_shape(in->position + 3 * (size_t)v[0], in->position + 3 * (size_t)v[1], in->position + 3 * (size_t)v[2])) {
+    switch (triangle_shape(p, p + 3, p + 6)) {
     case SHAPE_NOT_FINITE:
         im->not_finite++;
         break;
@@ -92,9 +110,14 @@ static void sift_triangle(importer *im, instance *in, const uint32_t *corner) {
         im->m->degenerate++;
         break;
     case SHAPE_GOOD:
-        memcpy(in->corner + 3 * in->triangles++, v, sizeof v);
+        in->kept[t / 8] |= (uint8_t)(1u << t % 8);
+        in->triangles++;
         break;
     }
+}
+
+static bool is_kept(const instance *in, size_t t) {
+    return in->kept[t / 8] >> t % 8 & 1;
 }
 
 /* Normal of vertex `v` of the part in the world: by the cofactors of the matrix, which is its inverse transpose up to a
@@ -116,10 +139,12 @@ static bool vertex_normal(const instance *in, uint32_t v, float out[3]) {
     return length > 0.0 && isfinite(length);
 }
 
-static void face_normal(const instance *in, const uint32_t *corner, float out[3]) {
-    const float *a = in->position + 3 * (size_t)corner[0], *b = in->position + 3 * (size_t)corner[1];
-    const float *c = in->position + 3 * (size_t)corner[2];
+static void face_normal(const instance *in, const uint32_t corner[3], float out[3]) {
+    float a[3], b[3], c[3];
     double e[3], f[3], n[3];
+    place_vertex(in, corner[0], a);
+    place_vertex(in, corner[1], b);
+    place_vertex(in, corner[2], c);
     for (int i = 0; i < 3; i++) {
         e[i] = (double)b[i] - (double)a[i];
         f[i] = (double)c[i] - (double)a[i];
@@ -164,7 +189,8 @@ bool import_make_room(importer *im, size_t more, size_t triangles) {
 
 static uint32_t add_vertex(model *m, const instance *in, const material_use *use, uint32_t v, const float normal[3]) {
     const size_t at = m->vertices;
-    memcpy(m->position + 3 * at, in->position + 3 * (size_t)v, 3 * sizeof *m->position);
+    place_vertex(in, v, m->position + 3 * at);
+    note_step(m, in, v);
     memcpy(m->normal + 3 * at, normal, 3 * sizeof *m->normal);
     vertex_uv(in, use, v, m->uv + 2 * at);
     return m->vertices++;
@@ -173,15 +199,19 @@ static uint32_t add_vertex(model *m, const instance *in, const material_use *use
 /* A vertex is shared by the part's triangles if the part has a normal for it; where we made the normals, each corner is one. */
 static void add_triangles(importer *im, instance *in, const material_use *use, uint32_t material) {
     model *m = im->m;
-    for (size_t t = 0; t < in->triangles; t++) {
-        const uint32_t *corner = in->corner + 3 * t;
+    const float *smooth = in->smooth;
+    for (size_t t = 0; t < in->part->triangles; t++) {
+        uint32_t corner[3];
+        if (!is_kept(in, t))
+            continue;
+        corners_of(in, t, corner);
         for (size_t k = 0; k < 3; k++) {
             const uint32_t v = corner[k];
             float normal[3];
-            uint32_t index = in->smooth ? VIT_NONE : in->vertex[v];
+            uint32_t index = smooth ? VIT_NONE : in->vertex[v];
             if (index == VIT_NONE) {
-                if (in->smooth)
-                    memcpy(normal, in->smooth + 9 * t + 3 * k, sizeof normal);
+                if (smooth)
+                    memcpy(normal, smooth + 3 * k, sizeof normal);
                 else if (!vertex_normal(in, v, normal))
                     face_normal(in, corner, normal);
                 index = in->vertex[v] = add_vertex(m, in, use, v, normal);
@@ -189,8 +219,29 @@ static void add_triangles(importer *im, instance *in, const material_use *use, u
             m->index[3 * (size_t)m->triangles + k] = index;
         }
         m->material[m->triangles++] = material;
+        smooth = smooth ? smooth + 9 : NULL;
     }
     m->materials[material].triangles += in->triangles;
+}
+
+/* Normals for what survives. */
+static bool make_normals(importer *im, instance *in) {
+    const mesh_part *part = in->part;
+    float *position = calloc(part->vertices, 3 * sizeof *position);
+    uint32_t *corner = calloc(in->triangles, 3 * sizeof *corner), *to = corner;
+    in->smooth = calloc(in->triangles, 9 * sizeof *in->smooth);
+    bool fine = position && corner && in->smooth;
+    for (uint32_t v = 0; fine && v < part->vertices; v++)
+        place_vertex(in, v, position + 3 * (size_t)v);
+    for (size_t t = 0; fine && t < part->triangles; t++)
+        if (is_kept(in, t)) {
+            corners_of(in, t, to);
+            to += 3;
+        }
+    fine = fine && import_normals(position, corner, in->triangles, in->smooth);
+    free(position);
+    free(corner);
+    return fine ? true : import_fail(im, "out of memory");
 }
 
 /* A vertex colour multiplies the albedo if it is the same all over the part. */
@@ -216,9 +267,8 @@ static bool add_instance(importer *im, instance *in) {
     float tint[3];
     material_use *use;
     uint32_t material;
-    place_vertices(im, in);
-    for (size_t i = 0; i < part->triangles; i++)
-        sift_triangle(im, in, part->corner + 3 * i);
+    for (size_t t = 0; t < part->triangles; t++)
+        sift_triangle(im, in, t);
     if (in->triangles == 0)
         return true;
     constant_color(im, part, tint);
@@ -230,12 +280,10 @@ static bool add_instance(importer *im, instance *in) {
         im->clear += in->triangles;
         return true;
     }
-    if (!part->normal.at) {
-        in->smooth = calloc(in->triangles, 9 * sizeof *in->smooth);
-        if (!in->smooth || !import_normals(in->position, in->corner, in->triangles, in->smooth))
-            return import_fail(im, "out of memory");
-    }
-    if (!import_material_index(im, use, &material) || !import_make_room(im, 3 * in->triangles, in->triangles))
+    if (!part->normal.at && !make_normals(im, in))
+        return false;
+    const size_t corners = 3 * in->triangles, most = in->smooth || corners < part->vertices ? corners : part->vertices;
+    if (!import_material_index(im, use, &material) || !import_make_room(im, most, in->triangles))
         return false;
     const bool has_uv = use->uv_set < IMPORT_UV_SETS && part->uv[use->uv_set].at;
     if (im->m->materials[material].image >= 0 && !has_uv && !use->warned_uv) {
@@ -263,13 +311,13 @@ bool import_place(importer *im, size_t mesh, const mesh_part *part, const double
     if (part->vertices == 0 || part->triangles == 0)
         return true;
     instance in = {.part = part, .world = world, .mirrored = determinant(world) < 0.0};
-    in.position = calloc(part->vertices, 3 * sizeof *in.position);
-    in.vertex = calloc(part->vertices, sizeof *in.vertex);
-    in.corner = calloc(part->triangles, 3 * sizeof *in.corner);
-    const bool fine = in.position && in.vertex && in.corner ? add_instance(im, &in) : import_fail(im, "out of memory");
-    free(in.position);
+    in.vertex = malloc(part->vertices * sizeof *in.vertex);
+    in.kept = calloc(part->triangles / 8 + 1, sizeof *in.kept);
+    if (in.vertex)
+        memset(in.vertex, 0xff, part->vertices * sizeof *in.vertex); /* VIT_NONE */
+    const bool fine = in.vertex && in.kept ? add_instance(im, &in) : import_fail(im, "out of memory");
     free(in.vertex);
-    free(in.corner);
+    free(in.kept);
     free(in.smooth);
     im->placed[mesh].triangles += im->m->triangles - before;
     return fine;

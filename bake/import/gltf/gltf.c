@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_EXPECTED ((uint64_t)1 << 24) /* vertices, triangles: by its word alone a file gets no more room */
+
 bool gltf_remark_once(gltf_file *g, gltf_remark remark, const char *text, const char *name) {
     const unsigned bit = 1u << remark;
     if (g->said & bit)
@@ -78,6 +80,27 @@ static bool look_at_transparency(gltf_file *g) {
 
 /* ---- reading ---- */
 
+/* Room for what the file says it has, so that nothing has to grow; what is not used of it costs addresses alone. */
+static bool expect(gltf_file *g) {
+    uint64_t triangles = 0, vertices = 0;
+    for (size_t i = 0; i < g->shown; i++) {
+        uint32_t mesh, position;
+        if (!gltf_index(g->nodes[g->places[i].node].json, "mesh", &mesh))
+            continue;
+        const json_t *primitives = json_object_get(gltf_item(g, "meshes", mesh), "primitives");
+        for (size_t k = 0; k < json_array_size(primitives); k++) {
+            const json_t *attributes = json_object_get(json_array_get(primitives, k), "attributes");
+            const uint64_t more = gltf_triangles_stated(g, json_array_get(primitives, k));
+            (void)gltf_index(attributes, "POSITION", &position);
+            const uint64_t stated = gltf_accessor_count(g, position);
+            triangles += more;
+            vertices += stated < 3 * more && json_object_get(attributes, "NORMAL") ? stated : 3 * more;
+        }
+    }
+    return triangles > MOST_EXPECTED || vertices > MOST_EXPECTED ||
+           import_make_room(g->im, (size_t)vertices, (size_t)triangles);
+}
+
 static bool prepare_meshes(gltf_file *g) {
     g->mesh_count = gltf_count(g, "meshes");
     g->meshes = calloc(g->mesh_count + 1, sizeof *g->meshes);
@@ -102,7 +125,7 @@ static bool read_all(gltf_file *g, const scene_mesh *mesh) {
         return false;
     if (is_animated(g) && !import_not_done(g->im, "animations are left out: what moves stands still"))
         return false;
-    return prepare_meshes(g) && look_at_transparency(g) && gltf_place_meshes(g, mesh);
+    return prepare_meshes(g) && look_at_transparency(g) && expect(g) && gltf_place_meshes(g, mesh);
 }
 
 static bool is_old(const gltf_file *g) {

@@ -187,10 +187,10 @@ static uint32_t sparse_at(const accessor *a, uint32_t i) {
     return (uint32_t)component(a->sparse_index + (size_t)i * size_of(a->sparse_kind), a->sparse_kind);
 }
 
-/* Floats that lie as they are wanted are taken where they lie. */
-static bool as_they_lie(const accessor *a) {
-    return a->at && a->kind == FLOAT && a->sparse_count == 0 && a->components == a->rows && a->stride % sizeof(float) == 0 &&
-           (uintptr_t)a->at % sizeof(float) == 0;
+/* Words that lie as they are wanted are taken where they lie. */
+static bool as_they_lie(const accessor *a, uint32_t kind) {
+    return a->at && a->kind == kind && !a->normalized && a->sparse_count == 0 && a->components == a->rows &&
+           a->stride % sizeof(uint32_t) == 0 && (uintptr_t)a->at % sizeof(uint32_t) == 0;
 }
 
 bool gltf_read_floats(gltf_file *g, uint32_t index, unsigned components, gltf_floats *out) {
@@ -202,7 +202,7 @@ bool gltf_read_floats(gltf_file *g, uint32_t index, unsigned components, gltf_fl
         return import_fail(g->im, "accessor %u has %u components, not %u", index, a.components, components);
     out->count = a.count;
     out->stride = out->components = a.components;
-    if (as_they_lie(&a)) {
+    if (as_they_lie(&a, FLOAT)) {
         out->at = (const float *)(const void *)a.at;
         out->stride = a.stride / sizeof(float);
         return true;
@@ -225,14 +225,20 @@ bool gltf_read_floats(gltf_file *g, uint32_t index, unsigned components, gltf_fl
     return true;
 }
 
-bool gltf_read_indices(gltf_file *g, uint32_t index, uint32_t **out, uint32_t *count) {
+bool gltf_read_indices(gltf_file *g, uint32_t index, gltf_indices *out) {
     accessor a;
-    *out = NULL;
+    *out = (gltf_indices){0};
     if (!open_accessor(g, index, &a))
         return false;
     if (a.components != 1 || a.kind == FLOAT)
         return import_fail(g->im, "accessor %u holds no indices", index);
+    out->count = a.count;
+    if (as_they_lie(&a, UNSIGNED_INT) && a.stride == sizeof(uint32_t)) {
+        out->at = (const uint32_t *)(const void *)a.at;
+        return true;
+    }
     uint32_t *to = calloc((size_t)a.count + 1, sizeof *to);
+    out->at = out->owned = to;
     if (!to)
         return import_fail(g->im, "out of memory");
     for (size_t i = 0; a.at && i < a.count; i++)
@@ -240,8 +246,6 @@ bool gltf_read_indices(gltf_file *g, uint32_t index, uint32_t **out, uint32_t *c
     for (uint32_t i = 0; i < a.sparse_count; i++)
         if (sparse_at(&a, i) < a.count)
             to[sparse_at(&a, i)] = (uint32_t)(int64_t)component(a.sparse_value + (size_t)i * a.size, a.kind);
-    *out = to;
-    *count = a.count;
     return true;
 }
 

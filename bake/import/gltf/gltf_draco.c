@@ -66,12 +66,12 @@ bool gltf_read_draco(gltf_file *g, const json_t *primitive, const json_t *how, g
     bool fine = take_all(g, block, json_object_get(how, "attributes"), out);
     const uint32_t faces = draco_faces(block);
     if (fine) {
-        out->corner = calloc((size_t)faces + 1, 3 * sizeof *out->corner);
-        out->triangles = out->corner ? faces : 0;
-        fine = out->corner ? true : import_fail(g->im, "out of memory");
+        out->corner = out->owned = calloc((size_t)faces + 1, 3 * sizeof *out->owned);
+        out->triangles = out->owned ? faces : 0;
+        fine = out->owned ? true : import_fail(g->im, "out of memory");
     }
     if (fine)
-        draco_corners(block, out->corner);
+        draco_corners(block, out->owned);
     draco_close(block);
     return fine;
 }

@@ -46,7 +46,8 @@ typedef struct gltf_part {
     gltf_floats joints[GLTF_JOINT_SETS], weights[GLTF_JOINT_SETS]; /* 4 a vertex */
     unsigned joint_sets;
     uint32_t first, vertices; /* of those, the first in use, and from it on to the last */
-    uint32_t *corner;         /* 3 a triangle, counted from `first` */
+    const uint32_t *corner;   /* 3 a triangle, counted from `first` */
+    uint32_t *owned;          /* what of it is to be freed */
     size_t triangles;
     unsigned material; /* the file's default one: the number of materials */
     const json_t *json;
@@ -114,8 +115,13 @@ bool gltf_meshopt(gltf_file *g, uint32_t view, const json_t *how, import_bytes *
 
 /* Accessor `index` as floats, of `components` a element at least; normalized ones are. */
 bool gltf_read_floats(gltf_file *g, uint32_t index, unsigned components, gltf_floats *out);
-/* A scalar accessor of unsigned integers; free() it. */
-bool gltf_read_indices(gltf_file *g, uint32_t index, uint32_t **out, uint32_t *count);
+/* A scalar accessor of unsigned integers; free() what is owned. */
+typedef struct gltf_indices {
+    const uint32_t *at;
+    uint32_t *owned;
+    uint32_t count;
+} gltf_indices;
+bool gltf_read_indices(gltf_file *g, uint32_t index, gltf_indices *out);
 void gltf_drop_floats(gltf_floats *f);
 /* Number of elements; 0: no such accessor. */
 uint32_t gltf_accessor_count(const gltf_file *g, uint32_t index);

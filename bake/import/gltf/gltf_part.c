@@ -69,44 +69,69 @@ static bool read_attributes(gltf_file *g, gltf_part *part) {
 }
 
 /* Strips turn every second triangle round. */
-static bool make_corners(gltf_file *g, gltf_part *part, const uint32_t *index, uint64_t corners) {
-    const uint32_t mode = mode_of(part->json);
-    const uint64_t triangles = triangles_of(mode, corners);
-    uint32_t *to = triangles <= VIT_MAX_TRIANGLES ? calloc((size_t)triangles + 1, 3 * sizeof *to) : NULL;
-    part->corner = to;
+static bool unroll(gltf_file *g, gltf_part *part, bool fan, const uint32_t *index) {
+    uint32_t *to = part->triangles <= VIT_MAX_TRIANGLES ? calloc(part->triangles + 1, 3 * sizeof *to) : NULL;
+    part->corner = part->owned = to;
     if (!to)
-        return import_fail(g->im, "out of memory for %llu triangles", (unsigned long long)triangles);
-    for (uint64_t t = 0; t < triangles; t++) {
-        const uint64_t first = mode == TRIANGLES ? 3 * t : mode == FAN ? 0 : t, second = mode == TRIANGLES ? first + 1 : t + 1;
-        const uint64_t odd = mode == STRIP ? t & 1 : 0, at[3] = {first, second + odd, second + 1 - odd};
+        return import_fail(g->im, "out of memory for %zu triangles", part->triangles);
+    for (size_t t = 0; t < part->triangles; t++) {
+        const size_t odd = fan ? 0 : t & 1, at[3] = {fan ? 0 : t, t + 1 + odd, t + 2 - odd};
         for (int k = 0; k < 3; k++)
             *to++ = index ? index[at[k]] : (uint32_t)at[k];
     }
-    part->triangles = (size_t)triangles;
+    return true;
+}
+
+/* 0, 1, 2, ... */
+static bool count_up(gltf_file *g, gltf_part *part) {
+    uint32_t *to = calloc(part->triangles + 1, 3 * sizeof *to);
+    part->corner = part->owned = to;
+    if (!to)
+        return import_fail(g->im, "out of memory");
+    for (uint32_t i = 0; i < 3 * (uint32_t)part->triangles; i++)
+        to[i] = i;
     return true;
 }
 
 static bool read_corners(gltf_file *g, gltf_part *part) {
-    uint32_t accessor, count = part->position.count, *index = NULL;
-    if (gltf_index(part->json, "indices", &accessor) && !gltf_read_indices(g, accessor, &index, &count))
+    const uint32_t mode = mode_of(part->json);
+    gltf_indices index = {.count = part->position.count};
+    uint32_t accessor;
+    const bool indexed = gltf_index(part->json, "indices", &accessor);
+    if (indexed && !gltf_read_indices(g, accessor, &index))
         return false;
-    const bool fine = make_corners(g, part, index, count);
-    free(index);
+    part->triangles = (size_t)triangles_of(mode, index.count);
+    if (mode == TRIANGLES && indexed) {
+        part->corner = index.at;
+        part->owned = index.owned;
+        return true;
+    }
+    const bool fine = mode == TRIANGLES ? count_up(g, part) : unroll(g, part, mode == FAN, index.at);
+    free(index.owned);
     return fine;
 }
 
-/* Many primitives may share the vertices of all: each keeps to what is between its first and its last. */
-static void find_range(gltf_part *part) {
+/* Many primitives may share the vertices of all: each keeps to what is between its first and its last. Corners out of range
+ * stay so. */
+static bool find_range(gltf_file *g, gltf_part *part) {
+    const size_t corners = 3 * part->triangles;
     uint32_t first = UINT32_MAX, last = 0;
-    for (size_t i = 0; i < 3 * part->triangles; i++)
+    for (size_t i = 0; i < corners; i++)
         if (part->corner[i] < part->position.count) {
             first = part->corner[i] < first ? part->corner[i] : first;
             last = part->corner[i] > last ? part->corner[i] : last;
         }
     part->first = first <= last ? first : 0;
     part->vertices = first <= last ? last - first + 1 : 0;
-    for (size_t i = 0; i < 3 * part->triangles; i++) /* those out of range stay so */
-        part->corner[i] = part->corner[i] < part->position.count ? part->corner[i] - part->first : GLTF_NONE;
+    if (part->first == 0)
+        return true;
+    uint32_t *to = part->owned ? part->owned : calloc(corners + 1, sizeof *to);
+    if (!to)
+        return import_fail(g->im, "out of memory");
+    for (size_t i = 0; i < corners; i++)
+        to[i] = part->corner[i] < part->position.count ? part->corner[i] - first : GLTF_NONE;
+    part->corner = part->owned = to;
+    return true;
 }
 
 static void choose_material(const gltf_file *g, gltf_part *part) {
@@ -134,8 +159,7 @@ bool gltf_read_part(gltf_file *g, const json_t *primitive, gltf_part *out) {
         return import_fail(g->im, "a primitive has material %u of %u", out->material, g->material_count);
     if (!(packed ? gltf_read_draco(g, primitive, packed, out) : read_attributes(g, out) && read_corners(g, out)))
         return false;
-    find_range(out);
-    return true;
+    return find_range(g, out);
 }
 
 void gltf_drop_part(gltf_part *part) {
@@ -148,6 +172,6 @@ void gltf_drop_part(gltf_part *part) {
         gltf_drop_floats(&part->joints[i]);
         gltf_drop_floats(&part->weights[i]);
     }
-    free(part->corner);
+    free(part->owned);
     *part = (gltf_part){0};
 }

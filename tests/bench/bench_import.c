@@ -1,0 +1,190 @@
+/* Our readers of mesh files against Assimp's, from file to model: processor time, and memory at its highest. Each reading has a
+ * process of its own, the two in turn. Pictures are the same work for both and would hide the rest: Sponza is read from a copy
+ * without them. Both must have the same triangles in the same box before anything is timed. */
+#include "import/assimp/assimp.h"
+#include "import/importer.h"
+#include "scenes.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#define ROUNDS 11
+
+typedef struct reading {
+    struct rusage used;
+    uint32_t triangles;
+    double size[3];       /* of the box */
+    double ms, mib, wall; /* of processor time; above a process that reads nothing; by the clock */
+} reading;
+
+static void read_here(const char *path, const import_format *format, reading *out) {
+    scene s;
+    vit_text why = {{0}};
+    model m = {0};
+    if (scene_for_mesh(path, &s, &why) != VIT_OK)
+        bench_fail("%s", why.text);
+    importer im = {.s = &s, .m = &m, .why = &why, .file = path, .format = format};
+    if (!format->read(&im, &s.meshes[0]))
+        bench_fail("%s", why.text);
+    double lo[3] = {1e30, 1e30, 1e30}, hi[3] = {-1e30, -1e30, -1e30};
+    for (size_t i = 0; i < 3 * (size_t)m.vertices; i++) {
+        lo[i % 3] = fmin(lo[i % 3], (double)m.position[i]);
+        hi[i % 3] = fmax(hi[i % 3], (double)m.position[i]);
+    }
+    out->triangles = m.triangles;
+    for (int k = 0; k < 3; k++)
+        out->size[k] = hi[k] - lo[k];
+}
+
+/* In a process of its own; format NULL: does nothing. */
+static reading read_apart(const char *path, const import_format *format) {
+    int ends[2];
+    reading r = {.triangles = 0};
+    const double began = bench_seconds();
+    const pid_t child = pipe(ends) == 0 ? fork() : -1;
+    if (child < 0)
+        bench_fail("no process: %s", strerror(errno));
+    if (child == 0) {
+        if (format)
+            read_here(path, format, &r);
+        (void)getrusage(RUSAGE_SELF, &r.used);
+        _exit(write(ends[1], &r, sizeof r) == (ssize_t)sizeof r ? 0 : 1);
+    }
+    (void)close(ends[1]);
+    int status = 0;
+    if (read(ends[0], &r, sizeof r) != (ssize_t)sizeof r || waitpid(child, &status, 0) != child || status != 0)
+        bench_fail("%s: the reading process has ended", path);
+    (void)close(ends[0]);
+    r.wall = 1e3 * (bench_seconds() - began);
+    r.ms = 1e3 * (double)(r.used.ru_utime.tv_sec + r.used.ru_stime.tv_sec) +
+           1e-3 * (double)(r.used.ru_utime.tv_usec + r.used.ru_stime.tv_usec);
+    r.mib = (double)r.used.ru_maxrss / 1024.0;
+    return r;
+}
+
+static bool same(const reading *a, const reading *b) {
+    for (int k = 0; k < 3; k++)
+        if (fabs(a->size[k] - b->size[k]) > 1e-5 * fabs(a->size[k]))
+            return false;
+    return a->triangles == b->triangles;
+}
+
+static void row(csv *c, const char *name, const char *reader, const char *what, const series *s, const char *unit) {
+    char column[64];
+    (void)snprintf(column, sizeof column, "%s, %s", reader, what);
+    printf("%-8s %-26s %9.2f +- %6.2f %s (%d)\n", name, column, series_median(s), series_mad(s), unit, s->count);
+    csv_row(c, name, "", column, s, unit);
+}
+
+static void compare(csv *c, const char *name, const char *path) {
+    series ms[2] = {{.count = 0}}, mib[2] = {{.count = 0}}, wall[2] = {{.count = 0}};
+    FILE *file = fopen(path, "rb");
+    uint8_t head[4096];
+    if (!file)
+        bench_fail("%s: %s", path, strerror(errno));
+    const size_t size = fread(head, 1, sizeof head, file);
+    (void)fclose(file);
+    const import_format *const formats[2] = {import_format_of(path, head, size), &assimp_format};
+    for (int i = 0; i < bench_rounds(ROUNDS); i++) {
+        const double nothing = read_apart(path, NULL).mib;
+        const reading ours = read_apart(path, formats[0]), theirs = read_apart(path, formats[1]);
+        if (!same(&ours, &theirs))
+            bench_fail("%s: %u triangles, and %u by Assimp, or another box", path, ours.triangles, theirs.triangles);
+        const reading *const both[2] = {&ours, &theirs};
+        for (int k = 0; k < 2; k++) {
+            series_add(&ms[k], both[k]->ms);
+            series_add(&mib[k], both[k]->mib - nothing);
+            series_add(&wall[k], both[k]->wall);
+        }
+    }
+    for (int k = 0; k < 2; k++) {
+        row(c, name, formats[k]->name, "processor", &ms[k], "ms");
+        row(c, name, formats[k]->name, "clock", &wall[k], "ms");
+        row(c, name, formats[k]->name, "memory", &mib[k], "MiB");
+    }
+    printf("%-8s ours over Assimp's: processor %.2f, clock %.2f, memory %.2f\n", name,
+           series_median(&ms[0]) / series_median(&ms[1]), series_median(&wall[0]) / series_median(&wall[1]),
+           series_median(&mib[0]) / series_median(&mib[1]));
+}
+
+/* A square of edge * edge quads with normals and texture coordinates. */
+static void write_grid(const char *folder, uint32_t edge, char path[BENCH_PATH]) {
+    const uint32_t vertices = (edge + 1) * (edge + 1), corners = 6 * edge * edge;
+    float *at = bench_array(8 * (size_t)vertices, sizeof *at);
+    uint32_t *corner = bench_array(corners, sizeof *corner), *to = corner;
+    for (uint32_t i = 0; i < vertices; i++) {
+        const float x = (float)(i % (edge + 1)), y = (float)(i / (edge + 1)), v[8] = {x, y, 0, 0, 0, 1, x / 8, y / 8};
+        memcpy(at + 3 * i, v, 12);
+        memcpy(at + 3 * (size_t)vertices + 3 * i, v + 3, 12);
+        memcpy(at + 6 * (size_t)vertices + 2 * i, v + 6, 8);
+    }
+    for (uint32_t y = 0; y < edge; y++)
+        for (uint32_t x = 0; x < edge; x++, to += 6) {
+            const uint32_t a = y * (edge + 1) + x, b = a + edge + 1, quad[6] = {a, a + 1, b, a + 1, b + 1, b};
+            memcpy(to, quad, sizeof quad);
+        }
+    (void)snprintf(path, BENCH_PATH, "%s/grid.bin", folder);
+    FILE *f = fopen(path, "wb");
+    if (!f || fwrite(at, 32, vertices, f) != vertices || fwrite(corner, 4, corners, f) != corners || fclose(f) != 0)
+        bench_fail("%s cannot be written", path);
+    (void)snprintf(path, BENCH_PATH, "%s/grid.gltf", folder);
+    f = fopen(path, "w");
+    if (!f)
+        bench_fail("%s cannot be written", path);
+    (void)fprintf(
+        f,
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"meshes\":"
+        "[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},\"indices\":3}]}],"
+        "\"buffers\":[{\"uri\":\"grid.bin\",\"byteLength\":%u}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%u},"
+        "{\"buffer\":0,\"byteOffset\":%u,\"byteLength\":%u}],\"accessors\":[",
+        32 * vertices + 4 * corners, 32 * vertices, 32 * vertices, 4 * corners);
+    (void)fprintf(f,
+                  "{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[%u,%u,0]},"
+                  "{\"bufferView\":0,\"byteOffset\":%u,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
+                  "{\"bufferView\":0,\"byteOffset\":%u,\"componentType\":5126,\"count\":%u,\"type\":\"VEC2\"},"
+                  "{\"bufferView\":1,\"componentType\":5125,\"count\":%u,\"type\":\"SCALAR\"}]}",
+                  vertices, edge, edge, 12 * vertices, vertices, 24 * vertices, vertices, corners);
+    (void)fclose(f);
+    free(at);
+    free(corner);
+}
+
+static void copy(const char *from, const char *to) {
+    char bytes[65536];
+    FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
+    size_t size;
+    if (!in || !out)
+        bench_fail("%s cannot be copied", from);
+    while ((size = fread(bytes, 1, sizeof bytes, in)) > 0)
+        if (fwrite(bytes, 1, size, out) != size)
+            bench_fail("%s cannot be written", to);
+    (void)fclose(in);
+    (void)fclose(out);
+}
+
+/* Its JSON and its buffer alone. */
+static bool copy_sponza(const char *folder, char path[BENCH_PATH]) {
+    char mesh[BENCH_PATH], to[BENCH_PATH];
+    if (!scene_mesh_path(&bench_scenes[1], mesh))
+        return false;
+    (void)snprintf(path, BENCH_PATH, "%s/sponza.gltf", folder);
+    copy(mesh, path);
+    (void)snprintf(to, sizeof to, "%s/sponza.bin", folder);
+    memcpy(strrchr(mesh, '.'), ".bin", 5);
+    copy(mesh, to);
+    return true;
+}
+
+int main(void) {
+    char path[BENCH_PATH];
+    csv c = csv_open("import");
+    const char *folder = BENCH_FOLDER "/import";
+    bench_folder(BENCH_FOLDER);
+    bench_folder(folder);
+    write_grid(folder, bench_smoke() ? 16 : 1000, path);
+    compare(&c, "grid", path);
+    if (!bench_smoke() && copy_sponza(folder, path))
+        compare(&c, "sponza", path);
+    csv_close(&c, "import");
+    return VIT_OK;
+}
