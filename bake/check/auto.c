@@ -80,9 +80,9 @@ static bool at_receivers(const scene_quality *q) {
     return q->indirect == INDIRECT_BASIS || q->indirect == INDIRECT_RADIOSITY;
 }
 
-/* Is it the basis, by the baker's own choice? */
+/* Is it so by the baker's own choice? */
 static bool may_fall_back(const search *s) {
-    return s->base.indirect == INDIRECT_BASIS && s->p->indirect_why[0];
+    return at_receivers(&s->base) && s->p->indirect_why[0];
 }
 
 /* As many bounces as leave hardly any light out. */
@@ -241,8 +241,8 @@ static vit_status take_receivers(search *s, vit_text *why) {
     s->p->scene.quality = s->base;
     if (status != VIT_OK || a->found.worst <= CHECK_LIMIT || !may_fall_back(s))
         return status;
-    const scene_quality of_basis = s->base;
-    const auto_found with_basis = *a;
+    const scene_quality of_baked = s->base;
+    const auto_found found_baked = *a;
     char had[128], has[128];
     s->base = s->stated;
     s->base.indirect = INDIRECT_PHOTONS;
@@ -251,15 +251,15 @@ static vit_status take_receivers(search *s, vit_text *why) {
         status = climb(s, why);
     if (status != VIT_OK)
         return status;
-    if (distance(&a->found) < distance(&with_basis.found)) {
-        check_text(&with_basis.found, had, sizeof had);
+    if (distance(&a->found) < distance(&found_baked.found)) {
+        check_text(&found_baked.found, had, sizeof had);
         check_text(&a->found, has, sizeof has);
-        (void)snprintf(s->p->indirect_why, sizeof s->p->indirect_why, "the basis has %s of path tracing's, photons %s", had,
-                       has);
+        (void)snprintf(s->p->indirect_why, sizeof s->p->indirect_why, "%s has %s of path tracing's, photons %s",
+                       of_baked.indirect == INDIRECT_BASIS ? "the basis" : "radiosity", had, has);
         return VIT_OK;
     }
-    a->found = with_basis.found;
-    s->p->scene.quality = of_basis;
+    a->found = found_baked.found;
+    s->p->scene.quality = of_baked;
     return VIT_OK;
 }
 

@@ -1,8 +1,10 @@
 /* The rules, in their order:
  *   photons where mirrors and glass send light on to matt surfaces: receivers are lit by surfaces, not by what those focus;
- *   photons where a light's track is too long, or jumps too often, for the knots that the basis has;
- *   photons where irradiance in all states of the lights would be too much (quality.basis_bytes);
- *   else the basis, which has no noise and costs a tenth. */
+ *   live radiosity where a light's track is too long, or jumps too often, for the knots that the basis has, or where irradiance
+ *   in all states of the lights would be too much (quality.basis_bytes), if radiosity itself is not too much; then photons;
+ *   else the basis, which has no noise and costs a tenth.
+ * Scenes have no lights but on tracks that are known. Lights that nobody knows beforehand, once there are such, are the second
+ * rule's as well: take_live(). */
 #include "pack/indirect_maker.h"
 #include "common/fail.h"
 #include "light/caustic_share.h"
@@ -112,10 +114,27 @@ static vit_status foresee(const plan_input *in, const plan *p, baked_foreseen *o
     return status;
 }
 
+/* What live radiosity takes while it is baked: what receivers see, form factors, the irradiance of the first look. */
+static double live_bytes(const scene_quality *q, const baked_foreseen *f) {
+    const double patches = q->patches, seen = (double)f->receivers * q->receiver_rays;
+    return sizeof(vit_u32) * seen + 3.0 * sizeof(float) * patches * patches + f->live_bytes;
+}
+
+/* For lights that the basis does not suit; `why` says what is wrong with it. Still light takes as much by either. */
+static void take_live(plan *p, const scene_quality *q, const baked_foreseen *f, const char *why) {
+    const double bytes = live_bytes(q, f);
+    if (f->states > 1 && bytes <= q->basis_bytes)
+        take(p, INDIRECT_RADIOSITY, "%s", why);
+    else if (f->states > 1)
+        take(p, INDIRECT_PHOTONS, "%s, and light between patches may take %.3g bytes", why, bytes);
+    else
+        take(p, INDIRECT_PHOTONS, "%s", why);
+}
+
 vit_status indirect_maker_choose(const plan_input *in, plan *p, vit_text *why) {
     static const char by_mirrors[] = "%.3g %% of the light on matt surfaces comes by mirrors and glass";
     const scene_quality *q = &in->scene->quality;
-    char caustics[96] = "";
+    char caustics[96] = "", why_live[160] = "";
     baked_foreseen f = {0};
     double part = 0;
     p->indirect = q->indirect;
@@ -129,14 +148,18 @@ vit_status indirect_maker_choose(const plan_input *in, plan *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     (void)snprintf(caustics, sizeof caustics, by_mirrors, 100 * part);
+    if (f.widest > MAKER_WIDEST)
+        (void)snprintf(why_live, sizeof why_live,
+                       "a light goes %.2g of the scene's size between two places of the basis; it may be %g", f.widest,
+                       MAKER_WIDEST);
+    else if (f.bytes > q->basis_bytes)
+        (void)snprintf(why_live, sizeof why_live,
+                       "irradiance in %u state%s of the lights may take %.3g bytes; basis_bytes = %.3g", f.states,
+                       f.states == 1 ? "" : "s", f.bytes, q->basis_bytes);
     if (part > MAKER_CAUSTICS)
         take(p, INDIRECT_PHOTONS, "%s, which the basis has not; it may be %g %%", caustics, 100 * MAKER_CAUSTICS);
-    else if (f.widest > MAKER_WIDEST)
-        take(p, INDIRECT_PHOTONS, "a light goes %.2g of the scene's size between two places of the basis; it may be %g",
-             f.widest, MAKER_WIDEST);
-    else if (f.bytes > q->basis_bytes)
-        take(p, INDIRECT_PHOTONS, "irradiance in %u state%s of the lights may take %.3g bytes; basis_bytes = %.3g", f.states,
-             f.states == 1 ? "" : "s", f.bytes, q->basis_bytes);
+    else if (why_live[0])
+        take_live(p, q, &f, why_live);
     else if (f.states == 1)
         take(p, INDIRECT_BASIS, "lights are still%s%s", part > 0 ? ", and only " : "", part > 0 ? caustics : "");
     else

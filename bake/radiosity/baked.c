@@ -11,6 +11,7 @@
 #define BOUNCE_RAYS 128u /* per cell, about */
 #define FEWER 4u         /* rays and cells of the first look, which tells where receivers must be near each other */
 #define FIRST_LOOK 0.15  /* share of the time, about */
+#define LIVE_STATES 64u  /* of all lights that are live, at which the first look asks for their light, about */
 
 /* States of the lights: what stays first, then each moving light at its knots, with an intensity of 1. */
 typedef struct states {
@@ -31,6 +32,14 @@ static void drop_states(states *s, uint32_t moving) {
     free(s->counts);
 }
 
+/* Keeps at most so many of a light's knots, evenly: where nothing is baked of it they need not be near each other. */
+static void thin(basis_knots *k, uint32_t most) {
+    const uint32_t count = k->count;
+    for (uint32_t i = 0; i < most && count > most; i++)
+        k->frame[i] = k->frame[(uint64_t)i * count / most];
+    k->count = count < most ? count : most;
+}
+
 static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
     s->knots = calloc(in->moving_count + 1u, sizeof *s->knots);
     s->first = calloc(in->moving_count + 1u, sizeof *s->first);
@@ -43,6 +52,8 @@ static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
     s->count = 1;
     for (uint32_t i = 0; i < in->moving_count && status == VIT_OK; i++) {
         status = basis_knots_find(in->tracks, in->frames, in->moving[i], in->size, &s->knots[i], why);
+        if (in->live && status == VIT_OK)
+            thin(&s->knots[i], in->moving_count < LIVE_STATES ? LIVE_STATES / in->moving_count : 1);
         s->first[i] = 3 * s->count;
         s->counts[i] = s->knots[i].count;
         s->count += s->knots[i].count;
@@ -120,7 +131,10 @@ vit_status baked_foresee(const tracks *t, uint32_t frames, const uint32_t *movin
         out->widest = fmax(out->widest, k.widest);
         basis_knots_free(&k);
     }
+    const uint32_t live_states = 1u + (moving_count > LIVE_STATES ? moving_count : LIVE_STATES);
+    out->receivers = MOST_RECEIVERS;
     out->bytes = 3.0 * sizeof(float) * MOST_RECEIVERS * out->states;
+    out->live_bytes = 3.0 * sizeof(float) * MOST_RECEIVERS * (live_states < out->states ? live_states : out->states);
     return VIT_OK;
 }
 

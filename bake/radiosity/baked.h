@@ -41,9 +41,11 @@ typedef struct baked {
 
 /* What can be told beforehand. */
 typedef struct baked_foreseen {
-    uint32_t states; /* of the lights: those that stay together, and each other at its knots */
-    double bytes;    /* of all receivers' irradiance in all states, at most: what is compressed then */
-    double widest;   /* basis_knots.widest of any light */
+    uint32_t states;    /* of the lights: those that stay together, and each other at its knots */
+    uint32_t receivers; /* at most, about */
+    double bytes;       /* of all receivers' irradiance in all states, at most: what is compressed then */
+    double live_bytes;  /* likewise, of the states that tell where receivers are if lights are live */
+    double widest;      /* basis_knots.widest of any light */
 } baked_foreseen;
 
 /* Lights `moving` of the tracks; size: as baked_input's. VIT_FAILED: out of memory. */

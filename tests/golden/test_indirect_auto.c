@@ -94,9 +94,13 @@ static void lights_that_move_are_baked_as_long_as_knots_suffice(void **state) {
         used += (size_t)snprintf(keys + used, sizeof keys - used, "%s{ time = %d.0; position = [%.1f, %.3f, 0.0]; %s}",
                                  i ? ", " : "", i, i % 2 ? 0.8 : -0.8, i / 100.0, i ? "" : "power = [10.0, 10.0, 10.0]; ");
     write_scene(*state, "", 80, keys, "");
-    bake(*state, "--indirect auto");
+    bake(*state, "--indirect auto --patches 32");
+    chosen(*state, "radiosity", line);
+    assert_non_null(strstr(line, "of the scene's size between two places"));
+    bake(*state, "--indirect auto --patches 32 --basis-bytes 1e6");
     chosen(*state, "photons", line);
     assert_non_null(strstr(line, "of the scene's size between two places"));
+    assert_non_null(strstr(line, "light between patches may take "));
 }
 
 static void irradiance_has_a_bound_in_bytes(void **state) {
@@ -105,6 +109,24 @@ static void irradiance_has_a_bound_in_bytes(void **state) {
     bake(*state, "--indirect auto --basis-bytes 1e6");
     chosen(*state, "photons", line);
     assert_non_null(strstr(line, "basis_bytes = 1e+06"));
+    assert_null(strstr(line, "patches")); /* still light takes as much by radiosity */
+}
+
+/* 12 bytes in each of 97 states of 196 608 receivers, 229 MB; radiosity has 64 states, 4 bytes for each ray of a receiver, and
+ * 12 for each pair of patches: 177 MB, or 945. */
+static void radiosity_is_taken_where_irradiance_is_too_much(void **state) {
+    char line[512];
+    write_scene(*state, "", 200,
+                STILL ", { time = 60.0; position = [0.8, 0.0, 0.0]; }, { time = 130.0; position = [-0.8, 0.2, 0.0]; } ); }, "
+                      "{ type = \"point\"; keys = ( " STILL ", { time = 60.0; position = [0.0, 0.0, 0.8]; }, "
+                      "{ time = 130.0; position = [0.2, 0.0, -0.8]; }",
+                "");
+    bake(*state, "--indirect auto --patches 32 --basis-bytes 2e8");
+    chosen(*state, "radiosity", line);
+    assert_non_null(strstr(line, "may take 2.29e+08 bytes; basis_bytes = 2e+08\n"));
+    bake(*state, "--indirect auto --patches 8000 --basis-bytes 2e8");
+    chosen(*state, "photons", line);
+    assert_non_null(strstr(line, "light between patches may take 9.47e+08 bytes"));
 }
 
 /* Hits of a path that the pack counts. */
@@ -213,6 +235,7 @@ int main(void) {
         cmocka_unit_test(what_mirrors_send_on_decides_and_is_measured),
         cmocka_unit_test(lights_that_move_are_baked_as_long_as_knots_suffice),
         cmocka_unit_test(irradiance_has_a_bound_in_bytes),
+        cmocka_unit_test(radiosity_is_taken_where_irradiance_is_too_much),
         cmocka_unit_test(what_is_asked_for_is_made),
         cmocka_unit_test(a_basis_is_refined_until_it_is_right),
         cmocka_unit_test(a_basis_that_is_wrong_gives_way_to_photons),
