@@ -4,17 +4,6 @@
  * to a whole sixteen, then all patches' points. */
 #if VIT_WITH(RADIOSITY)
 
-/* Four fused multiply-adds, s * v + a: as OpenCL one operation. */
-static inline float4 radiosity_add(float4 a, float s, float4 v) {
-#ifdef __OPENCL_VERSION__
-    return fma((float4)(s), v, a);
-#else
-    for (int k = 0; k < 4; k++)
-        a[k] = fma(s, v[k], a[k]);
-    return a;
-#endif
-}
-
 /* Radiosity of points by the lights that are live. */
 kernel void patch_light(RAY_SCENE_PARAMETERS, uint frame, global const vit_light *lights, global const vit_patch_point *points,
                         global float *radiosity WORK_PARAMETERS) {
@@ -64,7 +53,7 @@ kernel void patch_mean(global const vit_scene *scene, global const vit_patch *pa
     float4 sum = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f);
     uint end = patch < scene->patches ? patches[patch].end : 0;
     for (uint i = end ? patches[patch].first : 0; i < end; i++)
-        sum = radiosity_add(sum, points[i].weight, vload4(stride + i, radiosity));
+        sum = vit_along4(sum, points[i].weight, vload4(stride + i, radiosity));
     vstore4(sum, patch, radiosity);
 }
 #endif
@@ -118,11 +107,11 @@ static inline float4 gather_weighted(global const uint *at, uint count, global c
     float4 even = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), odd = even;
     uint i = 0;
     for (; i + 2 <= count; i += 2) {
-        even = radiosity_add(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
-        odd = radiosity_add(odd, (float)(at[i + 1] >> 16), vload4(at[i + 1] & 0xffffu, radiosity));
+        even = vit_along4(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
+        odd = vit_along4(odd, (float)(at[i + 1] >> 16), vload4(at[i + 1] & 0xffffu, radiosity));
     }
     if (i < count)
-        even = radiosity_add(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
+        even = vit_along4(even, (float)(at[i] >> 16), vload4(at[i] & 0xffffu, radiosity));
     return even + odd;
 }
 
@@ -144,9 +133,8 @@ kernel void gather_patches(global const vit_scene *scene, uint frame, global con
     WORK_ADD(evaluations, row->ones + row->weighted);
     WORK_ADD(bytes, sizeof(vit_gather_row) + sizeof(vit_receiver) + 4u * VIT_GATHER_WORDS(row));
     float4 ones = gather_ones(at, row->ones, radiosity);
-    float4 e =
-        radiosity_add(ones, 1.0f / VIT_GATHER_ONE, gather_weighted(at + (row->ones + 1u) / 2u, row->weighted, radiosity));
-    vstore4(radiosity_add(VIT_FLOAT4(still[0], still[1], still[2], 0.0f), row->scale, e), receiver, relit);
+    float4 e = vit_along4(ones, 1.0f / VIT_GATHER_ONE, gather_weighted(at + (row->ones + 1u) / 2u, row->weighted, radiosity));
+    vstore4(vit_along4(VIT_FLOAT4(still[0], still[1], still[2], 0.0f), row->scale, e), receiver, relit);
     WORK_END
 }
 #endif

@@ -61,15 +61,25 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
 }
 #endif
 
+/* The lane's place among its cell's receivers: which three, and whether something parts the cell. */
+static inline global const uint *receivers_of(global const uint *cells, global const vit_receiver_split *splits, int index,
+                                              float x, float y, float z) {
+    global const uint *cell = cells + (size_t)index * 4;
+    if (cell[3] == VIT_NONE)
+        return cell;
+    global const vit_receiver_split *s = splits + cell[3];
+    return fma(z, s->normal[2], fma(y, s->normal[1], x * s->normal[0])) > s->offset ? cell : s->receiver;
+}
+
 /* Irradiance, W/m2, of the lanes' places p, at barycentric weights b1, b2 of a side of a triangle (back: -1 for the back); 0
- * elsewhere. Neighbours mostly share a cell: each is read once. looked_up: with VIT_EFFECT_REACH, gets the receivers' bits. */
+ * elsewhere. Lane by lane: reads that wait for memory do not wait for each other, and neighbours mostly share a cell.
+ * looked_up: with VIT_EFFECT_REACH, gets the receivers' bits. */
 static inline lv3 receivers_light(global const uint *sides, global const uint *cells, global const vit_receiver_split *splits,
                                   global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p,
                                   volatile global uint *looked_up) {
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
-    lv3 total = lv3_set(L_F(0), L_F(0), L_F(0));
     lu kind = l_gather_u(cells, at.index * 4 + 3);
-    li own, divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
+    li divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
     if (l_any(divided)) {
         cell_place within =
             cell_among(L_AS_INT(l_gather_u(cells, divided & (at.index * 4))), L_AS_INT(kind & 255u), at.w1, at.w2);
@@ -78,30 +88,29 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
         at.w1 = l_sel(divided, within.w1, at.w1);
         at.w2 = l_sel(divided, within.w2, at.w2);
     }
-    while (l_any(lanes)) {
-        global const uint *cell = cells + (size_t)surface_next(&lanes, at.index, &own) * 4;
-        global const uint *of = cell;
-        li behind = L_I(0);
-        if (cell[3] != VIT_NONE) {
-            global const vit_receiver_split *s = splits + cell[3];
-            behind = own & ~L_GT(lv3_dot(p, lv3_load(s->normal)), L_F(s->offset));
-            own &= ~behind;
+    float value[3][VIT_LANES], w[3][VIT_LANES], place[3][VIT_LANES];
+    int index[VIT_LANES];
+    L_STORE(l_sel_i(lanes, at.index, L_I(-1)), index);
+    L_STORE(at.w0, w[0]);
+    L_STORE(at.w1, w[1]);
+    L_STORE(at.w2, w[2]);
+    L_STORE(p.x, place[0]);
+    L_STORE(p.y, place[1]);
+    L_STORE(p.z, place[2]);
+    for (int i = 0; i < VIT_LANES; i++) {
+        float4 e = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f);
+        if (index[i] >= 0) {
+            global const uint *of = receivers_of(cells, splits, index[i], place[0][i], place[1][i], place[2][i]);
+            for (int k = 0; VIT_EFFECT_REACH && k < 3; k++)
+                atomic_or(looked_up + of[k] / 32u, 1u << of[k] % 32u);
+            e = vload4(of[0], light) * w[0][i];
+            e = vit_along4(e, w[1][i], vload4(of[1], light));
+            e = vit_along4(e, w[2][i], vload4(of[2], light));
         }
-        for (int part = 0; part < 2; part++) {
-            if (l_any(own)) {
-                for (int k = 0; VIT_EFFECT_REACH && k < 3; k++)
-                    atomic_or(looked_up + of[k] / 32u, 1u << of[k] % 32u);
-                lv3 e = lv3_scale(lv3_load(light + (size_t)of[0] * 4), at.w0);
-                e = lv3_along(e, lv3_load(light + (size_t)of[1] * 4), at.w1);
-                e = lv3_along(e, lv3_load(light + (size_t)of[2] * 4), at.w2);
-                total = lv3_sel(own, e, total);
-            }
-            if (!l_any(behind))
-                break;
-            own = behind;
-            of = splits[cell[3]].receiver;
-            behind = L_I(0);
-        }
+        float out[4];
+        vstore4(e, 0, out);
+        for (int k = 0; k < 3; k++)
+            value[k][i] = out[k];
     }
-    return total;
+    return lv3_set(L_LOAD(value[0]), L_LOAD(value[1]), L_LOAD(value[2]));
 }
