@@ -9,19 +9,6 @@
 #define MOST 5000000u
 #define SIZES 12
 
-/* Least squares of log y over log x. */
-static double exponent(const double *x, const double *y, int count) {
-    double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (int i = 0; i < count; i++) {
-        const double a = log(x[i]), b = log(y[i]);
-        sx += a;
-        sy += b;
-        sxx += a * a;
-        sxy += a * b;
-    }
-    return (count * sxy - sx * sy) / (count * sxx - sx * sx);
-}
-
 static struct rusage usage(void) {
     struct rusage r;
     if (getrusage(RUSAGE_SELF, &r) != 0)
@@ -78,7 +65,7 @@ static void measure_all(csv *c, bool balls, uint32_t most) {
     }
     const int from = count > 3 ? count - 3 : 0; /* small ones are mostly light rays, whose number is given */
     if (count - from >= 2) {
-        const series slope = series_exact(exponent(triangles + from, seconds + from, count - from));
+        const series slope = series_exact(bench_exponent(triangles + from, seconds + from, count - from));
         csv_row(c, name, "", "exponent of the largest three", &slope, "1");
         printf("%-6s seconds ~ triangles^%.2f over the largest %d\n", name, slope.value[0], count - from);
     }

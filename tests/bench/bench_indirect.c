@@ -64,11 +64,6 @@ static void print_method(const trial *t, const method *m) {
     put_row(t, m, "pack", (double)m->bytes, "B");
 }
 
-static int shade(double linear) {
-    const double c = linear < 0 ? 0 : linear > 1 ? 1 : linear;
-    return (int)(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055) + 0.5);
-}
-
 /* Above: light at one exposure, the reference first. Below: differences over the mean, 0 as grey, the first all grey. */
 static void write_pictures(const trial *t) {
     FILE *f = untuned_create(t->scene->name, ".ppm");
@@ -81,7 +76,7 @@ static void write_pictures(const trial *t) {
                 const size_t at = 3 * (y % h * w + x % w) + k;
                 const double right = p->light[at], got = x < w ? right : (double)t->methods[x / w - 1].light[at];
                 const double off = fmin(fmax((got - right) / p->mean, -1), 1);
-                fputc(y < h ? shade(0.25 * got / p->mean) : (int)(127.5 + 127.5 * off), f);
+                fputc(y < h ? truth_shade(0.25 * got / p->mean) : (int)(127.5 + 127.5 * off), f);
             }
     fclose(f);
 }
@@ -92,7 +87,7 @@ static void write_every_pixel(const trial *t, const method *m, const images_grid
     FILE *f = untuned_create(name, ".ppm");
     fprintf(f, "P6\n%u %u\n255\n", g->width, g->height);
     for (size_t i = 0; i < 3 * (size_t)g->width * g->height; i++)
-        fputc(shade(0.25 * (double)m->every_pixel[i] / t->truth.part[ALL].mean), f);
+        fputc(truth_shade(0.25 * (double)m->every_pixel[i] / t->truth.part[ALL].mean), f);
     fclose(f);
 }
 

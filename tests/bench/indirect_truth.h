@@ -93,6 +93,12 @@ static inline void truth_trace(reference_input *in, double noise, double seconds
     truth_finish(t);
 }
 
+/* Linear light as a display has it, 0..255. */
+static inline int truth_shade(double linear) {
+    const double c = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+    return (int)(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055) + 0.5);
+}
+
 static inline void truth_free(truth *t) {
     reference_free(&t->r);
     free(t->sum);

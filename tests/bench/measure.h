@@ -104,6 +104,19 @@ static inline series series_rate(const series *ms, double amount) {
     return r;
 }
 
+/* Of y over x, positive: least squares of log y over log x. */
+static inline double bench_exponent(const double *x, const double *y, int count) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (int i = 0; i < count; i++) {
+        const double a = log(x[i]), b = log(y[i]);
+        sx += a;
+        sy += b;
+        sxx += a * a;
+        sxy += a * b;
+    }
+    return (count * sxy - sx * sy) / (count * sxx - sx * sx);
+}
+
 /* One value that is the same each time. */
 static inline series series_exact(double value) {
     return (series){.value = {value}, .count = 1};
