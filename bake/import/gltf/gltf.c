@@ -128,22 +128,23 @@ static bool read_all(gltf_file *g, const scene_mesh *mesh) {
     return prepare_meshes(g) && look_at_transparency(g) && expect(g) && gltf_place_meshes(g, mesh);
 }
 
+/* glTF 1, as JSON or as GLB. */
 static bool is_old(const gltf_file *g) {
-    return version_of(json_object_get(g->root, "asset"), "version") < 2.0 &&
-           gltf_text(json_object_get(g->root, "asset"), "version", NULL);
+    const double version = version_of(json_object_get(g->root, "asset"), "version");
+    return (g->file.size >= 8 && memcmp(g->file.at, "glTF\1\0\0\0", 8) == 0) || (version >= 1.0 && version < 2.0);
 }
 
 static bool read(importer *im, const scene_mesh *mesh) {
     gltf_file g = {.im = im};
     im->reader = &g;
     bool fine = gltf_open(&g);
-    const bool old = fine && is_old(&g);
-    fine = fine && (old || read_all(&g, mesh));
+    const bool old = is_old(&g);
+    fine = fine && !old && read_all(&g, mesh);
     gltf_close(&g);
     im->reader = NULL;
     if (!old)
         return fine;
-    im->format = &assimp_format; /* glTF 1 */
+    im->format = &assimp_format;
     return assimp_format.read(im, mesh);
 }
 
