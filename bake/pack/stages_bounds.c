@@ -75,7 +75,8 @@ vit_status stage_frames(bake *b, vit_text *why) {
 static vit_status keep_looked_up(bake *b, vit_text *why) {
     pipeline_packed *out = b->out;
     vit_scene *s = &out->plan.scene;
-    const vit_status status = live_keep(&out->live, s->receivers, b->bounds.looked_up, s->frames, why);
+    const vit_status status = live_keep(&out->live, &out->baked, b->bounds.looked_up, s->frames, why);
+    s->receivers = out->baked.receivers.count;
     s->gather_words = out->live.word_count;
     s->looked_frames = out->live.looked_frames;
     stages_point(b);

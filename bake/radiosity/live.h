@@ -6,6 +6,8 @@
 #include "radiosity/codec.h"
 #include "radiosity/receivers.h"
 
+struct baked;
+
 typedef struct live_input {
     const photon_rays *rays;
     const geometry *geometry;
@@ -37,7 +39,7 @@ typedef struct live {
     vit_u32 *words;          /* section GATH */
     vit_u32 *looked;         /* section LOOK; at first one set for all frames, of all receivers */
     coded transfer;          /* section XFER; empty with one reflection */
-    uint32_t patch_count, point_count, word_count;
+    uint32_t patch_count, point_count, row_count, word_count;
     uint32_t looked_frames; /* that share a set */
     live_saving saving;     /* by live_keep() */
     double unequal;         /* form_factors.unequal */
@@ -49,9 +51,10 @@ typedef struct live {
 vit_status live_find(const live_input *in, live *out, vit_text *why);
 /* One set of all receivers for all `frames`: before it is known what they look up. VIT_FAILED: out of memory. */
 vit_status live_look_at_all(live *l, uint32_t receiver_count, uint32_t frames, vit_text *why);
-/* Keeps what frames look up: `looked`, and rows of receivers that any frame looks up. bits: frames x receiver_count / 32 words,
- * a bit a receiver. VIT_FAILED: out of memory. */
-vit_status live_keep(live *l, uint32_t receiver_count, const vit_u32 *bits, uint32_t frames, vit_text *why);
+/* Keeps what frames look up: receivers, in the order that they had, with their rows and what still light gives them; cells get
+ * their new numbers. `b` is good for packing alone after that: its receivers.receivers are the old ones. bits: frames x
+ * receivers / 32 words, a bit a receiver. VIT_FAILED: out of memory. */
+vit_status live_keep(live *l, struct baked *b, const vit_u32 *bits, uint32_t frames, vit_text *why);
 void live_free(live *l);
 
 #endif

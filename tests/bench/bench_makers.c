@@ -1,7 +1,7 @@
-/* What indirect light costs by who makes it: photons, baked irradiance, live radiosity, of our demo and the Cornell box. Verified
- * first: the packs' own golden hashes. They take turns frame by frame, with the same scene without indirect light, so that what
- * slows the machine for a while slows all: beside the passes that a method adds it has the look-ups within the others, by the
- * difference of all passes to those without.
+/* What indirect light costs by who makes it: photons, baked irradiance, live radiosity, of our demo and the Cornell box.
+ * Verified first: the packs' own golden hashes. They take turns frame by frame, with the same scene without indirect light, so
+ * that what slows the machine for a while slows all: beside the passes that a method adds it has the look-ups within the
+ * others, by the difference of all passes to those without.
  *
  * bench_makers [SCENE...]; its packs are those of makers.h. */
 #include "makers.h"
@@ -15,7 +15,8 @@ typedef struct contest {
     const char *size;
     pack_image pack[MAKERS];
     player player[MAKERS];
-    series pass[MAKERS][VIT_MAX_PASSES], own[MAKERS], all[MAKERS], more[MAKERS]; /* ms: of passes that it adds, all, beyond none's */
+    series pass[MAKERS][VIT_MAX_PASSES], own[MAKERS], all[MAKERS],
+        more[MAKERS]; /* ms: of passes that it adds, all, beyond none's */
 } contest;
 
 static void contest_open(contest *c) {
@@ -77,8 +78,8 @@ static void put(csv *out, const contest *c, int m, const char *what, const serie
 
 static void report(csv *out, const contest *c) {
     const double photons = series_median(&c->own[PHOTONS]), photons_more = series_median(&c->more[PHOTONS]);
-    printf("\n%s, %s, ms, medians of %d frames\n%-10s %18s %10s %18s %10s %10s\n", c->scene->name, c->size, c->own[NONE].count, "",
-           "its passes", "", "with look-ups", "", "MB");
+    printf("\n%s, %s, ms, medians of %d frames\n%-10s %18s %10s %18s %10s %10s\n", c->scene->name, c->size, c->own[NONE].count,
+           "", "its passes", "", "with look-ups", "", "MB");
     for (int m = PHOTONS; m < MAKERS; m++) {
         const series bytes = series_exact((double)c->player[m].need.device_bytes);
         printf("%-10s %9.3f +- %5.2f %9.4f x %9.3f +- %5.2f %9.4f x %9.1f\n", maker_names[m], series_median(&c->own[m]),

@@ -1,6 +1,6 @@
-/* What the bake of indirect light takes over how fine it is: CPU seconds and peak memory of vitrine-bake on the Cornell box, with
- * live radiosity over the number of patches, with baked irradiance over the number of receivers; and the exponents that fit the
- * three largest. Less what the same bake takes without indirect light. Verified: each pack has what was asked for.
+/* What the bake of indirect light takes over how fine it is: CPU seconds and peak memory of vitrine-bake on the Cornell box,
+ * with live radiosity over the number of patches, with baked irradiance over the number of receivers; and the exponents that
+ * fit the three largest. Less what the same bake takes without indirect light. Verified: each pack has what was asked for.
  *
  * bench_scale [MOST]: patches at most; 4096 unless stated, since 16 384 take most of an hour. */
 #define _DEFAULT_SOURCE /* wait4() */
@@ -66,7 +66,8 @@ static void put(csv *c, const char *what, const step *s, int count) {
         csv_row(c, "cornell", "160x160", of, &bytes, "B");
     }
     const series of_time = series_exact(fitted(s, count, false)), of_memory = series_exact(fitted(s, count, true));
-    printf("exponent   %10.2f %10.2f   of the last %d\n", of_time.value[0], of_memory.value[0], count < FITTED ? count : FITTED);
+    printf("exponent   %10.2f %10.2f   of the last %d\n", of_time.value[0], of_memory.value[0],
+           count < FITTED ? count : FITTED);
     csv_row(c, what, "160x160", "exponent of CPU seconds", &of_time, "1");
     csv_row(c, what, "160x160", "exponent of memory", &of_memory, "1");
 }
