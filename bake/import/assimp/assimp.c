@@ -65,21 +65,30 @@ static bool add_scene(assimp_scene *a, const scene_mesh *mesh) {
            add_node(a, a->ai->mRootNode, mesh->transform, 0) && add_strays(a, mesh);
 }
 
+static bool read_scene(assimp_scene *a, const scene_mesh *mesh) {
+    struct aiFileIO io = assimp_files(a);
+    /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
+    a->ai = aiImportFileEx(a->im->file, 0, &io);
+    if (!a->ai)
+        return fail_by_assimp(a->im);
+    const bool fine = has_materials(a) && assimp_mend_tree(a) && assimp_triangulate(a) && add_scene(a, mesh);
+    assimp_free_cuts(a);
+    if (a->ai && !a->im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
+        aiReleaseImport(a->ai);
+    return fine;
+}
+
 static bool read(importer *im, const scene_mesh *mesh) {
-    assimp_scene a = {.im = im};
     if (!assimp_check_ply(im))
         return false;
-    struct aiFileIO io = assimp_files(&a);
-    im->reader = &a;
-    /* Polygons become triangles later; everything else is done here, so that it is the same for all releases of Assimp. */
-    a.ai = aiImportFileEx(im->file, 0, &io);
-    if (!a.ai)
-        return fail_by_assimp(im);
-    const bool fine = has_materials(&a) && assimp_mend_tree(&a) && assimp_triangulate(&a) && add_scene(&a, mesh);
-    assimp_free_cuts(&a);
-    if (a.ai && !im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
-        aiReleaseImport(a.ai);
+    assimp_scene *a = calloc(1, sizeof *a);
+    if (!a)
+        return import_fail(im, "out of memory");
+    a->im = im;
+    im->reader = a;
+    const bool fine = read_scene(a, mesh);
     im->reader = NULL;
+    free(a);
     return fine;
 }
 

@@ -135,13 +135,17 @@ static bool is_old(const gltf_file *g) {
 }
 
 static bool read(importer *im, const scene_mesh *mesh) {
-    gltf_file g = {.im = im};
-    im->reader = &g;
-    bool fine = gltf_open(&g);
-    const bool old = is_old(&g);
-    fine = fine && !old && read_all(&g, mesh);
-    gltf_close(&g);
+    gltf_file *g = calloc(1, sizeof *g);
+    if (!g)
+        return import_fail(im, "out of memory");
+    g->im = im;
+    im->reader = g;
+    bool fine = gltf_open(g);
+    const bool old = is_old(g);
+    fine = fine && !old && read_all(g, mesh);
+    gltf_close(g);
     im->reader = NULL;
+    free(g);
     if (!old)
         return fine;
     im->format = &assimp_format;

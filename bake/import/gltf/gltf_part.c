@@ -134,9 +134,13 @@ static bool find_range(gltf_file *g, gltf_part *part) {
     return true;
 }
 
-static void choose_material(const gltf_file *g, gltf_part *part) {
+/* The file's default one comes behind those that it has. */
+static bool choose_material(gltf_file *g, gltf_part *part) {
     uint32_t material;
-    part->material = gltf_index(part->json, "material", &material) ? material : g->material_count;
+    const bool stated = gltf_index(part->json, "material", &material);
+    part->material = stated ? material : g->material_count;
+    return !stated || material < g->material_count ||
+           import_fail(g->im, "a primitive has material %u of %u", material, g->material_count);
 }
 
 bool gltf_read_part(gltf_file *g, const json_t *primitive, gltf_part *out) {
@@ -154,9 +158,8 @@ bool gltf_read_part(gltf_file *g, const json_t *primitive, gltf_part *out) {
         g->im->m->not_triangles += points_and_lines(mode, corners_stated(g, primitive));
         return true;
     }
-    choose_material(g, out);
-    if (out->material > g->material_count)
-        return import_fail(g->im, "a primitive has material %u of %u", out->material, g->material_count);
+    if (!choose_material(g, out))
+        return false;
     if (!(packed ? gltf_read_draco(g, primitive, packed, out) : read_attributes(g, out) && read_corners(g, out)))
         return false;
     return find_range(g, out);
