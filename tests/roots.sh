@@ -1,0 +1,52 @@
+#!/bin/sh
+# Same file, same pack, whatever the libraries of the system: makes a root of each release with debootstrap, builds the baker there (without
+# OpenCL, not optimised), and compares its packs of the cases and of the glTF samples with this machine's, byte by byte:
+#   tests/roots.sh [folder for roots, default build/roots] [releases, default "trixie noble"] [tools, default build/release]
+# Needs to be root, debootstrap and the network; new roots take a quarter of an hour. Exit 1 if a pack or an exit status differs, or a root cannot
+# be made or built in.
+set -u
+roots=${1:-build/roots} releases=${2:-trixie noble} tools=${3:-build/release} failed=0
+cases=${VITRINE_CASES:-../shared/cases} scenes=${VITRINE_SCENES:-../shared/scenes}
+options="--no-check --quiet --device host --size 32x24 --frames 1 --photons 0"
+packages=$(make -s OPENCL=0 --eval='print-deps:;@echo $(filter-out gnuplot-nox,$(DEPS))' print-deps | tr ' ' ',')
+mkdir -p "$roots"
+make_root() { # release
+    [ ! -x "$roots/$1/usr/bin/gcc" ] || return 0
+    case $1 in
+    noble) set -- "$1" --no-check-gpg --components=main,universe http://archive.ubuntu.com/ubuntu /usr/share/debootstrap/scripts/gutsy ;;
+    *) set -- "$1" --components=main --components=main http://deb.debian.org/debian ;;
+    esac
+    debootstrap --variant=minbase "--include=$packages" "$2" "$3" "$1" "$roots/$1" "$4" ${5:+"$5"} > "$roots/$1.log" 2>&1
+}
+build_there() { # release
+    mkdir -p "$roots/$1/src" "$roots/$1/models"
+    git archive HEAD | tar x -C "$roots/$1/src" &&
+        chroot "$roots/$1" sh -c 'cd /src && make -s -j"$(nproc)" config=debug OPENCL=0 build/debug-no-opencl/vitrine-bake' > "$roots/$1.log" 2>&1
+}
+for r in $releases; do
+    if ! make_root "$r" || ! build_there "$r"; then
+        echo "$r: no root, or no baker in it: $roots/$r.log"
+        failed=1
+        continue
+    fi
+    [ ! -d "$cases" ] || cp -r "$cases" "$roots/$r/models/"
+    [ ! -d "$scenes/gltf" ] || cp -r "$scenes/gltf" "$roots/$r/models/"
+    same=0
+    for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' | sort); do
+        rm -f "$roots/$r/there.vit" "$roots/here.vit"
+        # shellcheck disable=SC2086 # options are several words
+        chroot "$roots/$r" /src/build/debug-no-opencl/vitrine-bake "/models/$model" -o /there.vit $options 2> /dev/null
+        there=$?
+        # shellcheck disable=SC2086
+        "$tools/vitrine-bake" "$roots/$r/models/$model" -o "$roots/here.vit" $options 2> /dev/null
+        here=$?
+        if [ $here = $there ] && { [ $here != 0 ] || cmp -s "$roots/$r/there.vit" "$roots/here.vit"; }; then
+            same=$((same + 1))
+        else
+            echo "$r: $model differs (exit $here here, $there there)"
+            failed=1
+        fi
+    done
+    echo "$r: $same files alike"
+done
+exit $failed
