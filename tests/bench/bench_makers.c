@@ -15,8 +15,8 @@ typedef struct contest {
     const char *size;
     pack_image pack[MAKERS];
     player player[MAKERS];
-    series pass[MAKERS][VIT_MAX_PASSES], own[MAKERS], all[MAKERS],
-        more[MAKERS]; /* ms: of passes that it adds, all, beyond none's */
+    series pass[MAKERS][VIT_MAX_PASSES], own[MAKERS], more[MAKERS]; /* ms: a pass, those that it adds, all beyond none's */
+    series own_part[MAKERS], more_part[MAKERS];                     /* of photons' in the same turn */
 } contest;
 
 static void contest_open(contest *c) {
@@ -51,22 +51,23 @@ static void verify(contest *c) {
 }
 
 static void time_frame(contest *c, uint32_t frame) {
-    double without = 0;
+    double own[MAKERS] = {0}, all[MAKERS] = {0};
     for (int m = 0; m < MAKERS; m++) {
         player *p = &c->player[m];
-        double all = 0, own = 0;
         player_frame(p, frame);
         for (uint32_t i = 0; i < vit_pass_count; i++) {
             if (!vit_pass_called(i, &p->v->launch))
                 continue;
             series_add(&c->pass[m][i], p->v->pass_ms[i]);
-            all += p->v->pass_ms[i];
-            own += vit_pass_called(i, &c->player[NONE].v->launch) ? 0 : p->v->pass_ms[i];
+            all[m] += p->v->pass_ms[i];
+            own[m] += vit_pass_called(i, &c->player[NONE].v->launch) ? 0 : p->v->pass_ms[i];
         }
-        without = m == NONE ? all : without;
-        series_add(&c->all[m], all);
-        series_add(&c->own[m], own);
-        series_add(&c->more[m], all - without);
+    }
+    for (int m = PHOTONS; m < MAKERS; m++) {
+        series_add(&c->own[m], own[m]);
+        series_add(&c->more[m], all[m] - all[NONE]);
+        series_add(&c->own_part[m], own[m] / own[PHOTONS]);
+        series_add(&c->more_part[m], (all[m] - all[NONE]) / (all[PHOTONS] - all[NONE]));
     }
 }
 
@@ -77,16 +78,17 @@ static void put(csv *out, const contest *c, int m, const char *what, const serie
 }
 
 static void report(csv *out, const contest *c) {
-    const double photons = series_median(&c->own[PHOTONS]), photons_more = series_median(&c->more[PHOTONS]);
-    printf("\n%s, %s, ms, medians of %d frames\n%-10s %18s %10s %18s %10s %10s\n", c->scene->name, c->size, c->own[NONE].count,
-           "", "its passes", "", "with look-ups", "", "MB");
+    printf("\n%s, %s, ms, medians of %d frames; x: of photons' in the same turn\n%-10s %18s %10s %18s %10s %10s\n",
+           c->scene->name, c->size, c->own[PHOTONS].count, "", "its passes", "", "with look-ups", "", "MB");
     for (int m = PHOTONS; m < MAKERS; m++) {
         const series bytes = series_exact((double)c->player[m].need.device_bytes);
         printf("%-10s %9.3f +- %5.2f %9.4f x %9.3f +- %5.2f %9.4f x %9.1f\n", maker_names[m], series_median(&c->own[m]),
-               series_mad(&c->own[m]), series_median(&c->own[m]) / photons, series_median(&c->more[m]), series_mad(&c->more[m]),
-               series_median(&c->more[m]) / photons_more, (double)c->player[m].need.device_bytes * 1e-6);
+               series_mad(&c->own[m]), series_median(&c->own_part[m]), series_median(&c->more[m]), series_mad(&c->more[m]),
+               series_median(&c->more_part[m]), series_median(&bytes) * 1e-6);
         put(out, c, m, "its passes", &c->own[m], "ms");
         put(out, c, m, "with look-ups", &c->more[m], "ms");
+        put(out, c, m, "its passes, of photons'", &c->own_part[m], "1");
+        put(out, c, m, "with look-ups, of photons'", &c->more_part[m], "1");
         put(out, c, m, "device memory", &bytes, "B");
     }
     for (uint32_t i = 0; i < vit_pass_count; i++) {

@@ -9,7 +9,7 @@
 #include "variant.h"
 #include <sys/resource.h>
 
-enum { LEAST_PATCHES = 256, USUAL_PATCHES = 4096, SPACINGS = 5, FITTED = 3, MOST_STEPS = 16 };
+enum { LEAST_PATCHES = 256, SMOKE_PATCHES = 32, USUAL_PATCHES = 4096, SPACINGS = 5, FITTED = 3, MOST_STEPS = 16 };
 
 typedef struct step {
     double count, seconds, bytes; /* patches or receivers; CPU; peak of the process */
@@ -85,11 +85,13 @@ int main(int argc, char **argv) {
     step of_patches[MOST_STEPS], of_receivers[SPACINGS];
     vit_scene scene;
     int count = 0;
-    const int most = argc > 1 ? atoi(argv[1]) : bench_smoke() ? LEAST_PATCHES : USUAL_PATCHES;
+    const int least = bench_smoke() ? SMOKE_PATCHES : LEAST_PATCHES, most = argc > 1        ? atoi(argv[1])
+                                                                            : bench_smoke() ? least
+                                                                                            : USUAL_PATCHES;
     const step without = bake("photons", "--photons", "0", &scene);
     if (scene.effects & VIT_BIT(INDIRECT))
         bench_fail("without photons there is indirect light");
-    for (int n = LEAST_PATCHES; n <= most && count < MOST_STEPS; n *= 2, count++) {
+    for (int n = least; n <= most && count < MOST_STEPS; n *= 2, count++) {
         char number[16];
         snprintf(number, sizeof number, "%d", n);
         const step found = bake("radiosity", "--patches", number, &scene);

@@ -32,15 +32,16 @@ static inline bool maker_asked_for(const maker_scene *s, int argc, char **argv) 
 static inline pack_image maker_pack(const maker_scene *s, int maker) {
     char path[BENCH_PATH], baker[] = VIT_BUILD_DIR "/vitrine-bake", cfg[128], of[16], to[] = "-o", picture[32];
     char quiet[] = "--quiet", indirect[] = "--indirect", size_option[] = "--size", no_check[] = "--no-check";
-    char rays[] = "--receiver-rays=32", patches[] = "--patches=64";
+    char rays[] = "--receiver-rays=32", patches[] = "--patches=64", frames[] = "--frames=2";
     snprintf(cfg, sizeof cfg, "%s", s->cfg);
     snprintf(of, sizeof of, "%s", maker_names[maker]);
     snprintf(picture, sizeof picture, "%s", maker_size(s));
     snprintf(path, sizeof path, "%s/makers-%s-%s-%s.vit", bench_results(), s->name, picture, of);
-    char *argv[] = {baker, cfg, to, path, indirect, of, size_option, picture, quiet, no_check, NULL, NULL, NULL};
+    char *argv[] = {baker, cfg, to, path, indirect, of, size_option, picture, quiet, no_check, NULL, NULL, NULL, NULL};
     if (bench_smoke()) {
         argv[10] = rays;
         argv[11] = patches;
+        argv[12] = frames;
     }
     if (!is_newer(path, cfg) || !is_newer(path, baker)) {
         printf("baking %s\n", path);
