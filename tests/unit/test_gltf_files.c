@@ -69,6 +69,7 @@ static void what_is_no_glTF_2_is_refused(void **state) {
     json_refused("{}", "is no glTF 2: its asset's version is ''");
     json_refused("{\"asset\":{\"version\":\"3.1\"}}", "is no glTF 2: its asset's version is '3.1'");
     json_refused("{\"asset\":{\"version\":2}}", "is no glTF 2");
+    json_refused("{" VERSION_2 "\"scene\":\"a\"}", "its scene is no number");
     json_refused("{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", "needs glTF 2.1");
     json_refused("{" VERSION_2 "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[7]}]}", "a primitive is none");
     json_refused("{" VERSION_2
@@ -79,6 +80,23 @@ static void what_is_no_glTF_2_is_refused(void **state) {
                  "a primitive has material 0 of 0");
     json_refused("{" VERSION_2 "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"NORMAL\":0}}]}]}",
                  "has no triangle");
+}
+
+/* Lists are objects there, and what names things are strings: Assimp reads it. */
+static void glTF_1_is_handed_on(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        char text[2048];
+        (void)snprintf(text, sizeof text,
+                       "{\"asset\":{\"version\":%s},\"scene\":\"s\",\"scenes\":{\"s\":{\"nodes\":[\"n\"]}},"
+                       "\"nodes\":{\"n\":{\"meshes\":[\"m\"]}},\"meshes\":{\"m\":{\"primitives\":[{\"attributes\":"
+                       "{\"POSITION\":\"a\"},\"mode\":4}]}},\"buffers\":{\"b\":{\"byteLength\":36,\"type\":\"arraybuffer\","
+                       "\"uri\":\"data:application/octet-stream;base64," BASE64 "\"}},\"bufferViews\":{\"v\":{\"buffer\":\"b\","
+                       "\"byteLength\":36,\"byteOffset\":0,\"target\":34962}},\"accessors\":{\"a\":{\"bufferView\":\"v\","
+                       "\"byteOffset\":0,\"byteStride\":12,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}}}",
+                       k ? "\"1.0\"" : "1");
+        json_is(text);
+    }
 }
 
 /* Nothing of it is right, and nothing may come of it but a line. */
@@ -171,9 +189,13 @@ static void content_goes_before_the_suffix(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        T(buffers_are_data_or_files),         T(text_may_be_odd),
-        T(what_is_no_glTF_2_is_refused),      T(lists_and_members_of_all_the_wrong_kinds_do_no_harm),
-        T(a_glb_has_its_buffer_in_its_chunk), T(content_goes_before_the_suffix),
+        T(buffers_are_data_or_files),
+        T(text_may_be_odd),
+        T(what_is_no_glTF_2_is_refused),
+        T(glTF_1_is_handed_on),
+        T(lists_and_members_of_all_the_wrong_kinds_do_no_harm),
+        T(a_glb_has_its_buffer_in_its_chunk),
+        T(content_goes_before_the_suffix),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);
 }

@@ -196,6 +196,15 @@ static void wrap_is_none(importer *im) {
 static void switch_is_neither(importer *im) {
     memset(&im->m->materials[0].area_light, 0x55, 1);
 }
+static void reader_is_none(importer *im) {
+    im->m->formats[0] = 99;
+}
+static void two_readers(importer *im) {
+    im->m->format_count = 2;
+}
+static void more_extensions_than_there_are(importer *im) {
+    im->m->extension_count = 1 << 20;
+}
 static void more_materials_than_triangles(importer *im) {
     im->m->material_count = 1 << 30;
 }
@@ -215,6 +224,9 @@ static void lies_about_the_model_are_seen(void **state) {
                                                image_is_none,
                                                wrap_is_none,
                                                switch_is_neither,
+                                               reader_is_none,
+                                               two_readers,
+                                               more_extensions_than_there_are,
                                                more_materials_than_triangles,
                                                more_vertices_than_corners,
                                                too_many_triangles};

@@ -16,18 +16,17 @@ bool gltf_remark_once(gltf_file *g, gltf_remark remark, const char *text, const 
                  : import_not_done(g->im, "%s", text);
 }
 
-/* "2.1" is 2.1; 0: no version. */
+/* "2.1" is 2.1, as is the number, which glTF 1 has; 0: no version. */
 static double version_of(const json_t *asset, const char *key) {
     const char *text = gltf_text(asset, key, "");
-    char *end;
-    const double version = strtod(text, &end);
-    return end > text && version > 0.0 && version < 1e6 ? version : 0.0;
+    const double version = *text ? strtod(text, NULL) : gltf_number(asset, key, 0.0);
+    return version > 0.0 && version < 1e6 ? version : 0.0;
 }
 
 static bool check_version(gltf_file *g) {
     const json_t *asset = json_object_get(g->root, "asset");
     const double version = version_of(asset, "version"), least = version_of(asset, "minVersion");
-    if (!(version >= 2.0 && version < 3.0))
+    if (!(version >= 2.0 && version < 3.0) || !gltf_text(asset, "version", NULL))
         return import_fail(g->im, "is no glTF 2: its asset's version is '%.20s'", gltf_text(asset, "version", ""));
     return least <= 2.0 || import_fail(g->im, "needs glTF %.20s", gltf_text(asset, "minVersion", ""));
 }

@@ -147,6 +147,8 @@ static bool place_all(gltf_file *g, step *way) {
     uint32_t chosen;
     if (!gltf_index(g->root, "scene", &chosen))
         chosen = 0;
+    if (chosen == GLTF_NONE)
+        return import_fail(g->im, "its scene is no number");
     if (scenes > 0 && chosen >= scenes)
         return import_fail(g->im, "scene %u of %zu", chosen, scenes);
     if (scenes > 1 && !import_not_done(g->im, "%zu of %zu scenes are left out", scenes - 1, scenes))
