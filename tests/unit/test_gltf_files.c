@@ -82,6 +82,33 @@ static void what_is_no_glTF_2_is_refused(void **state) {
                  "has no triangle");
 }
 
+static void what_is_not_of_its_kind_is_said(void **state) {
+    static const char *const cases[][2] = {
+        {",\"materials\":[{\"alphaCutoff\":\"0.5\"}]", "a member 'alphaCutoff' is not of its kind"},
+        {",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,null,1,1]}}]", "'baseColorFactor'"},
+        {",\"materials\":[{\"extensions\":{\"KHR_materials_ior\":{\"ior\":[2]}}}]", "'ior'"},
+        {",\"skins\":{}", "'skins'"},
+        {",\"materials\":[{\"name\":7}]", "'name'"},
+        {",\"extras\":{\"type\":7},\"extensions\":{\"VENDOR_x\":{\"ior\":[2]}}", NULL},
+        {",\"samplers\":[{}],\"cameras\":[],\"materials\":[{\"doubleSided\":true,\"alphaCutoff\":1}]", NULL},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[2048];
+        model m;
+        (void)snprintf(text, sizeof text, "{" VERSION_2 AROUND(DATA("data:;base64," BASE64), "%s") "}", cases[i][0]);
+        put(FILE_OF("a.gltf"), text);
+        import_good(FILE_OF("a.gltf"), &m);
+        model_free(&m);
+        if (!cases[i][1])
+            assert_string_equal(warnings, "");
+        else {
+            assert_non_null(strstr(warnings, cases[i][1]));
+            refuse(FILE_OF("a.gltf"), true, cases[i][1]);
+        }
+    }
+}
+
 /* Lists are objects there, and what names things are strings: Assimp reads it. */
 static void glTF_1_is_handed_on(void **state) {
     (void)state;
@@ -192,6 +219,7 @@ int main(void) {
         T(buffers_are_data_or_files),
         T(text_may_be_odd),
         T(what_is_no_glTF_2_is_refused),
+        T(what_is_not_of_its_kind_is_said),
         T(glTF_1_is_handed_on),
         T(lists_and_members_of_all_the_wrong_kinds_do_no_harm),
         T(a_glb_has_its_buffer_in_its_chunk),

@@ -120,7 +120,7 @@ static bool read_all(gltf_file *g, const scene_mesh *mesh) {
     g->material_count = (unsigned)materials;
     g->im->embedded = (unsigned)images;
     g->im->states_units = true;
-    if (!check_version(g) || !gltf_check_extensions(g) || !gltf_read_nodes(g))
+    if (!check_version(g) || !gltf_check_extensions(g) || !gltf_check_types(g) || !gltf_read_nodes(g))
         return false;
     if (is_animated(g) && !import_not_done(g->im, "animations are left out: what moves stands still"))
         return false;

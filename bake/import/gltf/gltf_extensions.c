@@ -33,6 +33,10 @@ static how how_done(const char *name) {
     return UNKNOWN;
 }
 
+bool gltf_reads_extension(const char *name) {
+    return how_done(name) == READ;
+}
+
 /* The model's entry for it; NULL: out of memory. */
 static model_extension *entry(gltf_file *g, const char *name) {
     model *m = g->im->m;

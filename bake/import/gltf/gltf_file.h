@@ -184,6 +184,9 @@ bool gltf_add_camera(gltf_file *g, const gltf_place *place, const double world[1
 
 /* gltf_extensions.c: notes the extensions that the file says it uses, and refuses what it cannot be understood without. */
 bool gltf_check_extensions(gltf_file *g);
+bool gltf_reads_extension(const char *name);
+/* gltf_types.c: says so if a member is not of the kind that it must be. */
+bool gltf_check_types(gltf_file *g);
 
 /* gltf.c: what the file says and is not done, once a file. True if it is only a warning. */
 bool gltf_remark_once(gltf_file *g, gltf_remark remark, const char *text, const char *name);
