@@ -189,9 +189,19 @@ bool triangle_rays_nearest(const triangle_rays *r, vec3 origin, vec3 direction, 
     return q.best.triangle != VIT_NONE;
 }
 
-bool triangle_rays_any(const triangle_rays *r, vec3 origin, vec3 direction, float limit, triangle_rays_accept *accept,
-                       const void *user) {
+FUSED_TARGET static bool meets_fused(query *q, uint32_t triangle) {
+    return meet(q, triangle);
+}
+
+static bool meets(query *q, uint32_t triangle) {
+    return q->r->fused ? meets_fused(q, triangle) : meet(q, triangle);
+}
+
+bool triangle_rays_any_likely(const triangle_rays *r, vec3 origin, vec3 direction, float limit, triangle_rays_accept *accept,
+                              const void *user, uint32_t *likely) {
     query q = make_query(r, origin, direction, limit, accept, user);
+    if (*likely != VIT_NONE && meets(&q, *likely))
+        return true;
     struct RTCRay ray = embree_ray(origin, direction, limit);
     if (is_far(r, origin)) {
         meet_all(&q);
@@ -207,7 +217,15 @@ bool triangle_rays_any(const triangle_rays *r, vec3 origin, vec3 direction, floa
         rtcOccluded1(r->scene, &q.context, &ray);
 #endif
     }
+    if (q.best.triangle != VIT_NONE)
+        *likely = q.best.triangle;
     return q.best.triangle != VIT_NONE;
+}
+
+bool triangle_rays_any(const triangle_rays *r, vec3 origin, vec3 direction, float limit, triangle_rays_accept *accept,
+                       const void *user) {
+    uint32_t none = VIT_NONE;
+    return triangle_rays_any_likely(r, origin, direction, limit, accept, user, &none);
 }
 
 static float largest_coordinate(const vit_triangle *triangles, uint32_t count) {

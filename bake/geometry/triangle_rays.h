@@ -39,5 +39,9 @@ bool triangle_rays_nearest(const triangle_rays *r, vec3 origin, vec3 direction, 
 /* Is there one? */
 bool triangle_rays_any(const triangle_rays *r, vec3 origin, vec3 direction, float limit, triangle_rays_accept *accept,
                        const void *user);
+/* The same, sooner where one triangle stops many rays: *likely is asked first, and becomes the one that stopped this ray, if
+ * one did; VIT_NONE: none is known. */
+bool triangle_rays_any_likely(const triangle_rays *r, vec3 origin, vec3 direction, float limit, triangle_rays_accept *accept,
+                              const void *user, uint32_t *likely);
 
 #endif

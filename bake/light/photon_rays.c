@@ -49,6 +49,10 @@ bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, flo
     return triangle_rays_any(&r->rays, origin, direction, distance, r->cutouts ? opaque : NULL, r->s);
 }
 
+bool photon_rays_occluded_likely(const photon_rays *r, vec3 origin, vec3 direction, float distance, uint32_t *likely) {
+    return triangle_rays_any_likely(&r->rays, origin, direction, distance, r->cutouts ? opaque : NULL, r->s, likely);
+}
+
 bool photon_rays_open(const photon_scene *s, unsigned threads, photon_rays *out) {
     *out = (photon_rays){.s = s, .cutouts = has_cutouts(s)};
     return triangle_rays_open(s->triangles, s->triangle_count, s->box_pad, threads, &out->rays);

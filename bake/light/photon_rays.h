@@ -22,5 +22,7 @@ uint32_t photon_rays_nearest(const photon_rays *r, vec3 origin, vec3 direction, 
 bool photon_rays_covered(const photon_rays *r, uint32_t triangle, vec3 p, vec3 n);
 /* Is there an opaque hit within `distance` metres along the unit direction? Any number of threads at once. */
 bool photon_rays_occluded(const photon_rays *r, vec3 origin, vec3 direction, float distance);
+/* The same; likely: as in triangle_rays_any_likely(). */
+bool photon_rays_occluded_likely(const photon_rays *r, vec3 origin, vec3 direction, float distance, uint32_t *likely);
 
 #endif

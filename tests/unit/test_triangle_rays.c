@@ -51,7 +51,7 @@ static void hits_are_those_of_a_loop_over_all(void **state) {
     static const float from[] = {0.3f, 3.0f, 12.0f};
     triangle_rays r, all;
     const uint32_t count = make_ball();
-    uint32_t lost = 0;
+    uint32_t lost = 0, last = VIT_NONE;
     assert_true(triangle_rays_open(ball, count, 0x1p-20f, 1, &r));
     all = r;
     all.nearest = -1.0f; /* as from very far */
@@ -64,6 +64,12 @@ static void hits_are_those_of_a_loop_over_all(void **state) {
         const bool hit = triangle_rays_nearest(&r, o, d, INFINITY, NULL, NULL, &a);
         assert_true(triangle_rays_nearest(&all, o, d, INFINITY, NULL, NULL, &b) == hit);
         assert_true(triangle_rays_any(&r, o, d, INFINITY, NULL, NULL) == hit);
+        uint32_t likely = i % 2 ? last : i % count; /* whatever is guessed */
+        assert_true(triangle_rays_any_likely(&r, o, d, INFINITY, NULL, NULL, &likely) == hit);
+        if (hit) {
+            last = likely;
+            assert_true(triangle_rays_any_likely(&all, o, d, INFINITY, NULL, NULL, &likely));
+        }
         if (hit) {
             assert_int_equal(a.triangle, b.triangle);
             assert_memory_equal(&a.distance, &b.distance, sizeof a.distance);
