@@ -9,6 +9,7 @@
 #define TURN 0.5       /* of the scene's size: what a turn by one radian counts for */
 #define MOST_KNOTS 64u /* of a light */
 #define ITERATIONS 24  /* of the power method, a vector */
+#define PALE 0.05      /* of the channels' mean: a channel of less counts as so much more */
 #define DIM 0.1        /* of a group's mean: light so dim does not count for more */
 #define LONGEST 32767.0f
 
@@ -122,7 +123,12 @@ static double largest(const double *m, uint32_t columns, double *left, double *r
     return sum;
 }
 
-static bool keep(factors *f, uint32_t columns, const double *left, const double *right, const double *row_weight) {
+/* What a group's numbers are multiplied by, so that squares of errors are relative to what is there. */
+typedef struct weights {
+    double row[VIT_BASIS_GROUP], channel[3];
+} weights;
+
+static bool keep(factors *f, uint32_t columns, const double *left, const double *right, const weights *by) {
     float *l = realloc(f->left, (size_t)(f->rank + 1) * VIT_BASIS_GROUP * sizeof *l);
     if (l)
         f->left = l;
@@ -132,18 +138,18 @@ static bool keep(factors *f, uint32_t columns, const double *left, const double 
     if (!l || !r)
         return false;
     for (uint32_t i = 0; i < VIT_BASIS_GROUP; i++)
-        l[(size_t)f->rank * VIT_BASIS_GROUP + i] = (float)(left[i] / row_weight[i]);
+        l[(size_t)f->rank * VIT_BASIS_GROUP + i] = (float)(left[i] / by->row[i]);
     for (uint32_t c = 0; c < columns; c++)
-        r[(size_t)f->rank * columns + c] = (float)right[c];
+        r[(size_t)f->rank * columns + c] = (float)(right[c] / by->channel[c % 3u]);
     f->rank++;
     return true;
 }
 
-/* Rows are weighted by 1 / what they are, so that the error is relative to what is there. */
-static double weigh(const factoring *w, uint32_t group, uint32_t light, double *m, double *row_weight) {
+/* The matrix of a group, weighted. Returns the sum of its squares. */
+static double weigh(const factoring *w, uint32_t group, uint32_t light, double *m, weights *by) {
     const basis_input *in = w->in;
     const uint32_t columns = 3 * in->knots[light];
-    double mean = 0.0, all = 0.0;
+    double mean = 0.0, all = 0.0, of_channel[3] = {0.0, 0.0, 0.0}, part = 0.0;
     for (uint32_t r = 0; r < VIT_BASIS_GROUP; r++) {
         const uint32_t receiver = group * VIT_BASIS_GROUP + r;
         double sum = 0.0;
@@ -153,17 +159,24 @@ static double weigh(const factoring *w, uint32_t group, uint32_t light, double *
             m[(size_t)r * columns + c] = v;
             sum += v;
         }
-        row_weight[r] = sum / columns;
+        by->row[r] = sum / columns;
         mean += sum / columns / VIT_BASIS_GROUP;
     }
     for (uint32_t r = 0; r < VIT_BASIS_GROUP; r++) {
-        row_weight[r] = mean > 0.0 ? 1.0 / (row_weight[r] + DIM * mean) : 1.0;
+        by->row[r] = mean > 0.0 ? 1.0 / (by->row[r] + DIM * mean) : 1.0;
+        for (uint32_t c = 0; c < columns; c++)
+            of_channel[c % 3u] += m[(size_t)r * columns + c] *= by->row[r];
+    }
+    for (uint32_t c = 0; c < 3; c++)
+        part += of_channel[c] / 3.0;
+    for (uint32_t c = 0; c < 3; c++)
+        by->channel[c] = part > 0.0 ? 1.0 / (of_channel[c] / part + PALE) : 1.0;
+    for (uint32_t r = 0; r < VIT_BASIS_GROUP; r++)
         for (uint32_t c = 0; c < columns; c++) {
             double *v = m + (size_t)r * columns + c;
-            *v *= row_weight[r];
+            *v *= by->channel[c % 3u];
             all += *v * *v;
         }
-    }
     return all;
 }
 
@@ -172,16 +185,17 @@ static void factor(void *user, uint32_t item) {
     const uint32_t light = item % w->in->lights, columns = 3 * w->in->knots[light];
     factors *f = w->found + item;
     double *m = malloc((size_t)VIT_BASIS_GROUP * columns * sizeof *m), *right = malloc(columns * sizeof *right),
-           left[VIT_BASIS_GROUP], row_weight[VIT_BASIS_GROUP];
+           left[VIT_BASIS_GROUP];
+    weights by;
     bool fine = m && right;
     if (fine) {
-        f->all = f->rest = weigh(w, item / w->in->lights, light, m, row_weight);
+        f->all = f->rest = weigh(w, item / w->in->lights, light, m, &by);
         const double enough = f->all * w->in->error;
         while (fine && f->rest > enough && f->rank < VIT_BASIS_RANK && f->rank < columns) {
             const double got = largest(m, columns, left, right);
             if (!(got > 0.0))
                 break;
-            fine = keep(f, columns, left, right, row_weight);
+            fine = keep(f, columns, left, right, &by);
             f->rest = 0.0;
             for (uint32_t r = 0; r < VIT_BASIS_GROUP; r++)
                 for (uint32_t c = 0; c < columns; c++) {
