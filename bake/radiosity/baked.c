@@ -77,15 +77,6 @@ static vit_status make_states(const baked_input *in, states *s, vit_text *why) {
     return VIT_OK;
 }
 
-static void hang(const receivers *r, float *irradiance, uint32_t columns) {
-    for (uint32_t i = 0; i < r->hanging_count; i++) {
-        const receiver_hanging *h = r->hanging + i;
-        const float *a = irradiance + (size_t)h->from[0] * columns, *b = irradiance + (size_t)h->from[1] * columns;
-        for (uint32_t c = 0; c < columns; c++)
-            irradiance[(size_t)h->receiver * columns + c] = a[c] + (b[c] - a[c]) * h->weight;
-    }
-}
-
 static uint32_t baked_lights(const baked_input *in) {
     return in->live ? 0 : in->moving_count;
 }
@@ -138,27 +129,10 @@ vit_status baked_foresee(const tracks *t, uint32_t frames, const uint32_t *movin
     return VIT_OK;
 }
 
-/* What every look at the light has. */
-static transport_input look_at(const baked_input *in, const states *s, const receiver *places, uint32_t count) {
-    const uint32_t wanted = CELLS_PER_RECEIVER * count;
-    const uint32_t of_light = wanted < CELLS_LEAST ? CELLS_LEAST : wanted < CELLS_MOST ? wanted : CELLS_MOST;
-    return (transport_input){.rays = in->rays,
-                             .geometry = in->geometry,
-                             .receivers = places,
-                             .receiver_count = count,
-                             .states = s->state,
-                             .state_count = s->count,
-                             .reflections = in->reflections,
-                             .cells = of_light,
-                             .receiver_rays = in->receiver_rays,
-                             .bounce_rays = of_light * BOUNCE_RAYS,
-                             .panes = in->panes,
-                             .threads = in->threads};
-}
-
 typedef struct finding {
     const baked_input *in;
     const states *states;
+    transport_report report;
 } finding;
 
 static void first_step(void *user, double done) {
@@ -171,55 +145,82 @@ static void second_step(void *user, double done) {
     f->in->progress(f->in->user, FIRST_LOOK + done * (1.0 - FIRST_LOOK));
 }
 
-/* Without lights there is none. */
-static vit_status find(const transport_input *t, float *irradiance, transport_report *report, vit_text *why) {
-    uint32_t lights = 0;
-    for (uint32_t i = 0; i < t->state_count; i++)
-        lights += t->states[i].count;
-    memset(irradiance, 0, (size_t)t->receiver_count * 3u * t->state_count * sizeof *irradiance);
-    return lights > 0 ? transport_find(t, irradiance, report, why) : VIT_OK;
+/* Light of the records: records x columns. Without lights there is none. fewer: by how much rays and cells are fewer. */
+static vit_status find(finding *f, const receiver *records, uint32_t count, uint32_t fewer, float *irradiance, vit_text *why) {
+    const baked_input *in = f->in;
+    uint32_t lights = 0, of_light = CELLS_PER_RECEIVER * count;
+    of_light = (of_light < CELLS_LEAST ? CELLS_LEAST : of_light < CELLS_MOST ? of_light : CELLS_MOST) / fewer;
+    of_light = of_light > CELLS_LEAST ? of_light : CELLS_LEAST;
+    const transport_input t = {.rays = in->rays,
+                               .geometry = in->geometry,
+                               .receivers = records,
+                               .receiver_count = count,
+                               .states = f->states->state,
+                               .state_count = f->states->count,
+                               .reflections = in->reflections,
+                               .cells = of_light,
+                               .receiver_rays = in->receiver_rays > fewer ? in->receiver_rays / fewer : 1,
+                               .bounce_rays = of_light * (BOUNCE_RAYS / fewer),
+                               .panes = in->panes,
+                               .threads = in->threads,
+                               .progress = !in->progress ? NULL
+                                           : fewer > 1   ? first_step
+                                                         : second_step,
+                               .user = f};
+    for (uint32_t i = 0; i < t.state_count; i++)
+        lights += t.states[i].count;
+    memset(irradiance, 0, (size_t)count * 3u * t.state_count * sizeof *irradiance);
+    return lights > 0 ? transport_find(&t, irradiance, &f->report, why) : VIT_OK;
+}
+
+/* Light of all receivers: receivers x columns. */
+static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, float *irradiance, vit_text *why) {
+    const uint32_t columns = 3 * f->states->count;
+    uint32_t count = 0;
+    receiver *records = malloc((r->count + 1u) * sizeof *records);
+    if (!records)
+        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    for (uint32_t i = 0; i < r->count; i++)
+        if (!r->receivers[i].follows)
+            records[count++] = r->receivers[i];
+    const vit_status status = find(f, records, count, fewer, irradiance, why);
+    free(records);
+    for (uint32_t i = r->count; i-- > 0 && status == VIT_OK;)
+        if (!r->receivers[i].follows)
+            memmove(irradiance + (size_t)i * columns, irradiance + (size_t)--count * columns, columns * sizeof *irradiance);
+    receivers_follow(r, irradiance, columns);
+    return status;
 }
 
 /* receivers_input.look */
-static vit_status look_first(void *user, const receiver *places, uint32_t count, float *irradiance, vit_text *why) {
-    finding *f = user;
-    transport_report unused;
-    transport_input t = look_at(f->in, f->states, places, count);
-    t.cells = t.cells / FEWER > CELLS_LEAST ? t.cells / FEWER : CELLS_LEAST;
-    t.bounce_rays = t.cells * (BOUNCE_RAYS / FEWER);
-    t.receiver_rays = t.receiver_rays / FEWER > 0 ? t.receiver_rays / FEWER : 1;
-    t.progress = f->in->progress ? first_step : NULL;
-    t.user = f;
-    return find(&t, irradiance, &unused, why);
+static vit_status look_first(void *user, const receivers *r, float *irradiance, vit_text *why) {
+    return find_all(user, r, FEWER, irradiance, why);
 }
 
 static vit_status look_again(finding *f, baked *out, vit_text *why) {
-    const receivers *r = &out->receivers;
     states s = *f->states;
     s.count = f->in->live ? 1 : s.count;
     const uint32_t columns = 3 * s.count;
-    transport_input t = look_at(f->in, &s, r->receivers, r->count);
-    t.progress = f->in->progress ? second_step : NULL;
-    t.user = f;
+    const receivers *r = &out->receivers;
     float *irradiance = malloc(((size_t)r->count * columns + 1u) * sizeof *irradiance);
     if (!irradiance)
         return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
-    vit_status status = find(&t, irradiance, &out->report, why);
-    if (status == VIT_OK) {
-        hang(r, irradiance, columns);
+    finding again = {.in = f->in, .states = &s};
+    vit_status status = find_all(&again, r, 1, irradiance, why);
+    out->report = again.report;
+    if (status == VIT_OK)
         status = keep(f->in, &s, irradiance, out, why);
-    }
     free(irradiance);
-    free(out->receivers.hanging); /* it has said all */
-    out->receivers.hanging = NULL;
-    out->receivers.hanging_count = 0;
+    free(out->receivers.followers); /* they have said all */
+    out->receivers.followers = NULL;
+    out->receivers.follower_count = 0;
     return status;
 }
 
 vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
     *out = (baked){0};
     states s = {0};
-    finding f = {in, &s};
+    finding f = {.in = in, .states = &s};
     vit_status status = make_states(in, &s, why);
     const receivers_input place = {.rays = in->rays,
                                    .geometry = in->geometry,

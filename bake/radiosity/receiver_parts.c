@@ -8,7 +8,7 @@
 #define STEP 0.4f      /* of the light at the corners of a part, over its mean */
 #define DIM 0.02f      /* of the mean of all: less counts as so much */
 #define MORE_STEP 1.3f /* where there would be too many */
-#define MORE 1u        /* receivers of parts, at most so many times those of cells, */
+#define MORE 1u        /* receivers of parts, at most so many times the records of cells, */
 #define MORE_LEAST 16384u
 
 /* How much the light of a cell's corners differs, over its mean; all columns together. */
@@ -34,7 +34,8 @@ static uint32_t parts_for(float contrast, float step) {
 
 /* The step by which they are not too many. */
 static float find_step(const placing *p, const float *contrast) {
-    const uint32_t most = p->out->count * MORE > MORE_LEAST ? p->out->count * MORE : MORE_LEAST;
+    const uint32_t records = p->out->count - p->out->follower_count,
+                   most = records * MORE > MORE_LEAST ? records * MORE : MORE_LEAST;
     for (float step = STEP;; step *= MORE_STEP) {
         uint64_t nodes = 0;
         for (uint32_t i = 0; i < p->cells.count; i++) {
@@ -59,6 +60,8 @@ bool receivers_find_parts(placing *p, const float *irradiance) {
     }
     for (size_t i = 0; irradiance && i < (size_t)p->out->count * p->in->columns; i++)
         mean += (double)irradiance[i] / p->out->count;
+    if (irradiance)
+        receivers_part_records(p, irradiance, mean);
     for (uint32_t i = 0; irradiance && i < count; i++)
         if (p->met[p->cells.side_of[i]] && p->looked_at[i])
             contrast[i] = contrast_of(p, i, irradiance, mean);
@@ -108,18 +111,18 @@ bool receivers_find_edges(placing *p) {
 
 static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight) {
     receivers *o = p->out;
-    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].hangs)
+    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].follows)
         return true;
-    if (o->hanging_count == p->hanging_room) {
-        const uint32_t room = p->hanging_room ? 2 * p->hanging_room : 1024;
-        receiver_hanging *more = realloc(o->hanging, room * sizeof *more);
+    if (o->follower_count == p->follower_room) {
+        const uint32_t room = p->follower_room ? 2 * p->follower_room : 1024;
+        receiver_follower *more = realloc(o->followers, room * sizeof *more);
         if (!more)
             return false;
-        o->hanging = more;
-        p->hanging_room = room;
+        o->followers = more;
+        p->follower_room = room;
     }
-    o->receivers[on].hangs = true;
-    o->hanging[o->hanging_count++] = (receiver_hanging){on, {a, b}, weight};
+    o->receivers[on].follows = true;
+    o->followers[o->follower_count++] = (receiver_follower){on, {a, b, a, a, a, a}, {1.0f - weight, weight}};
     return true;
 }
 

@@ -8,6 +8,7 @@
 #define WELD_LEAST 0.08f /* likewise, at least */
 #define NORMAL_STEPS 12  /* of the octahedral square each way, for like normals */
 #define PULLED_IN 0.04f  /* of the way to the cell's middle: corners lie on edges, where others' surfaces begin */
+#define REACH 0.5f       /* spacings: as near as that records say what light a receiver has */
 #define HARDLY_SEEN 3.0f /* spacings: corners of cells that no ray of a camera met share receivers as near as that */
 #define GROWTH 1.1f
 #define ROUNDS 4       /* of growth, at most */
@@ -20,7 +21,7 @@ static float cell_edge(void *user, uint32_t side) {
 
 /* 2. Corners of cells share receivers. */
 
-static uint32_t new_receiver(placing *p, uint32_t side, float b1, float b2) {
+static uint32_t new_receiver(placing *p, uint32_t side, float b1, float b2, float reach) {
     receivers *o = p->out;
     if (o->count == p->room) {
         const uint32_t room = p->room ? 2 * p->room : 4096;
@@ -32,7 +33,7 @@ static uint32_t new_receiver(placing *p, uint32_t side, float b1, float b2) {
         o->receivers = more;
         p->room = room;
     }
-    o->receivers[o->count] = (receiver){.side = side, .b1 = b1, .b2 = b2};
+    o->receivers[o->count] = (receiver){.side = side, .b1 = b1, .b2 = b2, .reach = reach};
     return o->count++;
 }
 
@@ -73,6 +74,7 @@ typedef struct cornered {
     uint32_t side;
     cell_corners at;
     float weld;          /* corners nearer to each other may be one, m */
+    float reach;         /* receiver.reach */
     float lift;          /* how far above the surface places look at each other, m */
     bool seen;           /* or nothing need be looked at */
     bool only;           /* of its side */
@@ -139,14 +141,14 @@ static uint32_t corner_receiver(placing *p, const cornered *c, int corner, const
             at = (at + 1) & (p->slots - 1);
         if (p->found[at] == VIT_NONE) {
             p->keys[at] = key;
-            return p->found[at] = new_receiver(p, c->side, in[0], in[1]);
+            return p->found[at] = new_receiver(p, c->side, in[0], in[1], c->reach);
         }
         known = p->found[at];
     }
     const receiver *r = p->out->receivers + known;
     if (!c->seen || !p->met[c->side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, c->lift)))
         return known;
-    return new_receiver(p, c->side, in[0], in[1]);
+    return new_receiver(p, c->side, in[0], in[1], c->reach);
 }
 
 /* 3. What stands on a cell. */
@@ -218,7 +220,7 @@ static void take_corners(placing *p, const cornered *c, uint32_t places, vit_u32
                          is_open(p, c->side, in[0], in[1], c->lift)))
             out[i] = corner_receiver(p, c, i, in, from);
         else
-            out[i] = new_receiver(p, c->side, at[0], at[1]);
+            out[i] = new_receiver(p, c->side, at[0], at[1], c->reach);
     }
 }
 
@@ -258,9 +260,12 @@ static bool take(placing *p, const cornered *c, const separations *s, uint32_t w
 static bool take_cell(placing *p, const separations *s, uint32_t cell) {
     const uint32_t side = p->cells.side_of[cell];
     const float weld = p->looked_at[cell] ? weld_of(p, side) : float_min(p->spacing[side] * HARDLY_SEEN, p->unseen);
+    const bool hardly = !p->looked_at[cell] || !p->met[side];
+    const float reach = p->spacing[side] * (hardly ? HARDLY_SEEN : REACH);
     const cornered c = {.side = side,
                         .at = cells_corners(&p->cells, cell),
                         .weld = p->seen[side] ? weld : p->unseen,
+                        .reach = p->seen[side] ? reach : p->unseen,
                         .lift = lift_of(p, side, 1),
                         .seen = p->seen[side],
                         .only = p->cells.sides[side] >> VIT_SIDE_PARTS_SHIFT == 1};
@@ -332,10 +337,12 @@ static vit_status divide(placing *p, vit_text *why) {
     const receivers_input *in = p->in;
     float *irradiance = NULL;
     vit_status status = VIT_OK;
-    if (in->look) {
+    if (in->look && !receivers_find_records(p)) {
+        status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
+    } else if (in->look) {
         irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance);
-        status = irradiance ? in->look(in->user, p->out->receivers, p->out->count, irradiance, why)
-                            : bake_fail(why, VIT_FAILED, "receivers: out of memory");
+        status =
+            irradiance ? in->look(in->user, p->out, irradiance, why) : bake_fail(why, VIT_FAILED, "receivers: out of memory");
     }
     if (status == VIT_OK && !divide_cells(p, irradiance))
         status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
@@ -377,7 +384,7 @@ static void drop_cells(placing *p) {
     p->found = p->parts = p->first_part = p->whole = NULL;
     p->looked_at = NULL;
     p->edge_parts = NULL;
-    p->slots = p->room = p->split_room = p->hanging_room = 0;
+    p->slots = p->room = p->split_room = p->follower_room = 0;
     cells_free(&p->cells);
 }
 
@@ -446,6 +453,6 @@ void receivers_free(receivers *r) {
     free(r->cells);
     free(r->splits);
     free(r->receivers);
-    free(r->hanging);
+    free(r->followers);
     *r = (receivers){0};
 }

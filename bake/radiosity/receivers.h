@@ -10,7 +10,7 @@
 #include "light/photon_rays.h"
 #include "motion/tracks.h"
 
-struct receiver;
+struct receivers;
 
 typedef struct receivers_input {
     const photon_rays *rays;
@@ -24,7 +24,7 @@ typedef struct receivers_input {
     unsigned threads;               /* 0: all cores; changes no byte */
     /* A first look at the light of receivers, roughly: receivers x columns. Cells whose corners differ much are divided. NULL:
      * none is. */
-    vit_status (*look)(void *user, const struct receiver *receivers, uint32_t count, float *irradiance, vit_text *why);
+    vit_status (*look)(void *user, const struct receivers *r, float *irradiance, vit_text *why);
     void *user;
     uint32_t columns;
 } receivers_input;
@@ -32,22 +32,26 @@ typedef struct receivers_input {
 typedef struct receiver {
     uint32_t side;
     float b1, b2;
-    bool hangs; /* its light follows from that of two others: of hanging */
+    float reach;  /* m: records as near as that say what its light is; 0: none does */
+    bool follows; /* its light follows from that of others: of followers. Those whose does not are records. */
 } receiver;
 
-/* On an edge that a neighbour divides less often: the neighbour's light there, so that light is continuous. */
-typedef struct receiver_hanging {
-    uint32_t receiver, from[2];
-    float weight; /* of the second */
-} receiver_hanging;
+#define RECEIVER_FROM 6u
+
+/* Where records are near enough, or on an edge that a neighbour divides less often: the neighbour's light there, so that light
+ * is continuous. */
+typedef struct receiver_follower {
+    uint32_t receiver, from[RECEIVER_FROM]; /* from: records, or followers of smaller index in the list */
+    float weight[RECEIVER_FROM];            /* sum to 1; 0: not this one */
+} receiver_follower;
 
 typedef struct receivers {
     vit_u32 *sides;             /* 2 a triangle: section SIDE */
     vit_receiver_cell *cells;   /* section RCEL */
     vit_receiver_split *splits; /* section RSPL */
     receiver *receivers;        /* ordered so that neighbours in space are near each other in the list */
-    receiver_hanging *hanging;
-    uint32_t side_count, cell_count, split_count, count, hanging_count;
+    receiver_follower *followers;
+    uint32_t side_count, cell_count, split_count, count, follower_count;
     uint32_t seen_sides; /* of triangles, by the path's cameras */
     uint32_t lit_sides;  /* that light can reach, of matt materials */
 } receivers;
@@ -55,5 +59,7 @@ typedef struct receivers {
 /* VIT_FAILED: out of memory. On failure there is nothing to free. */
 vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *why);
 void receivers_free(receivers *r);
+/* Light of followers, from that of records: receivers x columns. */
+void receivers_follow(const receivers *r, float *irradiance, uint32_t columns);
 
 #endif

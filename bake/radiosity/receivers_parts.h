@@ -33,7 +33,7 @@ typedef struct placing {
     uint64_t *edges;     /* a hash table of cells' edges: their two receivers, the larger in the high half */
     uint8_t *edge_parts; /* the fewest that a cell there is divided into; 0: no such edge */
     uint32_t edge_slots; /* a power of two */
-    uint32_t room, split_room, hanging_room;
+    uint32_t room, split_room, follower_room;
     uint64_t *keys; /* a hash table of welded corners */
     uint32_t *found;
     uint32_t slots; /* of the table, a power of two */
@@ -46,10 +46,14 @@ bool receivers_find_spacing(placing *p);
 bool receivers_find_looked_at(placing *p);
 /* receiver_parts.c: `parts`, `first_part`, `whole`. irradiance: of the cells' receivers, or NULL. */
 bool receivers_find_parts(placing *p, const float *irradiance);
+/* receiver_records.c: `followers` of the cells' receivers, of those that lie near records. */
+bool receivers_find_records(placing *p);
+/* Those whose records' light differs are records, too; mean: of the light of all, columns added up. */
+void receivers_part_records(placing *p, const float *irradiance, double mean);
 /* `edges`, once cells have receivers. */
 bool receivers_find_edges(placing *p);
 #define RECEIVER_NODES (VIT_RECEIVER_PARTS + 1u)
-/* `hanging` of a cell's parts, whose corner i, j has receiver node[i][j], or VIT_NONE. */
+/* `followers` of a cell's parts, whose corner i, j has receiver node[i][j], or VIT_NONE. */
 bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES]);
 
 #endif

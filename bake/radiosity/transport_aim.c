@@ -112,7 +112,7 @@ static uint32_t aim_row(const targets *g, uint32_t row, uint32_t *to, float *fac
         to[n] = t->gathers.to[k];
         factor[n++] = t->gathers.factor[k];
     }
-    for (uint32_t i = 0; i < a->rays && g->count > 0 && !r->hangs; i++) {
+    for (uint32_t i = 0; i < a->rays && g->count > 0; i++) {
         vec3 at;
         const double u = ((double)i + (double)unit_float(pcg(seed + 3u * i))) / a->rays * g->all;
         const uint32_t number = g->aim[chosen(g, u)];
@@ -263,7 +263,7 @@ static bool aim_all(aiming *a, transport *t) {
 bool transport_aim(transport *t, const float *radiosity) {
     const uint64_t ways = VIT_BIT(MIRROR) | VIT_BIT(GLASS); /* rays that met a cell by way of these cannot be aimed */
     const uint32_t rays = t->in->receiver_rays / AIMED_RAYS;
-    if (getenv("NOAIM") || (t->in->rays->s->effects & ways) || rays == 0 || t->in->receiver_count == 0)
+    if ((t->in->rays->s->effects & ways) || rays == 0 || t->in->receiver_count == 0)
         return true;
     float *bright = malloc((t->count + 1u) * sizeof *bright);
     aiming a = {.t = t, .bright = bright, .rays = rays, .room = rays + t->in->receiver_rays};

@@ -6,6 +6,7 @@
 
 #define LEAST_SAMPLES 4u    /* of each light that is found by chance, at each of a cell's places */
 #define MORE_LOOKS 384.0    /* at lights, per cell that is wanted, shared out by how much each adds to the error */
+#define SHADOWS 64u         /* lights whose last shadow is known; others share */
 #define BLOCK 64u           /* cells that are alike in how light varies on them */
 #define MOST_SAMPLES 16384u /* of a cell */
 
@@ -18,6 +19,7 @@ typedef struct lighting {
     transport *t;
     float *radiosity;
     float *weight;    /* a number: how much of its light receivers get, summed */
+    double all;       /* of weight, summed */
     double *variance; /* a number: of one sample, all columns added up */
     uint32_t *more;   /* a number: further samples */
     bool again;       /* these are taken */
@@ -49,19 +51,34 @@ static spot spot_at(const transport *t, const transport_place *p, float edge) {
                   .albedo = albedo};
 }
 
+/* What stopped the last ray to a light, for as many lights; places near each other are often in the same shadow. */
+typedef struct shadows {
+    uint32_t triangle[SHADOWS], last;
+} shadows;
+
+static vec3 light_that_passes(const transport *t, const spot *at, const arrival *a, uint32_t *likely) {
+    float mirror;
+    if (t->in->panes)
+        return panes_pass(t->in->rays, true, at->position, a->direction, a->distance, &mirror);
+    const float part = photon_rays_occluded_likely(t->in->rays, at->position, a->direction,
+                                                   a->distance - 2.0f * t->in->rays->s->ray_offset, likely)
+                           ? 0.0f
+                           : 1.0f;
+    return (vec3){part, part, part};
+}
+
 /* Radiosity by one look at a light. */
-static vec3 look(const transport *t, const photons_light *l, const spot *at, double x, double y, uint64_t *rays) {
+static vec3 look(const transport *t, const photons_light *l, const spot *at, double x, double y, uint32_t *likely,
+                 uint64_t *rays) {
     const arrival a = photon_arrival(t->in->rays, l, at->position, x, y);
     if (a.distance < near_of(t, l))
         return (vec3){0.0f, 0.0f, 0.0f};
     const float cosine = vec3_dot(at->normal, a.direction);
-    float mirror;
     if (!(cosine > 0.0f) || !(vec3_dot(at->face, a.direction) > 0.0f) ||
         !(a.irradiance.x + a.irradiance.y + a.irradiance.z > 0.0f))
         return (vec3){0.0f, 0.0f, 0.0f};
     *rays += 1;
-    const vec3 part = panes_pass(t->in->rays, t->in->panes, at->position, a.direction, a.distance, &mirror);
-    return vec3_times(vec3_times(vec3_scale(a.irradiance, cosine), part), at->albedo);
+    return vec3_times(vec3_times(vec3_scale(a.irradiance, cosine), light_that_passes(t, at, &a, likely)), at->albedo);
 }
 
 static bool shines(const area_lights *e, uint32_t side) {
@@ -107,36 +124,49 @@ static float numbers(uint32_t seed, uint32_t i, float *v) {
 
 /* One sample of a cell's radiosity in all states; repeats: of lights that are found by chance. Returns the sum. */
 static double light_place(const transport *t, const spot *at, uint32_t seed, uint32_t first, uint32_t repeats, float scale,
-                          float *to, uint64_t *rays) {
+                          float *to, shadows *known, uint64_t *rays) {
     double sum = 0.0;
+    uint32_t n = 0;
     for (uint32_t s = 0; s < t->in->state_count; s++)
         for (uint32_t i = 0; i < t->in->states[s].count; i++) {
             const photons_light *light = t->in->states[s].lights + i;
             const uint32_t looks = is_sampled(light) ? repeats : 1;
+            uint32_t *likely = known->triangle + n++ % SHADOWS;
+            *likely = *likely == VIT_NONE ? known->last : *likely;
             for (uint32_t k = 0; k < looks; k++) {
                 float v;
                 const float u = numbers(pcg(seed ^ pcg(i)), first + k, &v);
-                vec3 e = look(t, light, at, (double)u, (double)v, rays);
+                vec3 e = look(t, light, at, (double)u, (double)v, likely, rays);
                 if (near_of(t, light) > 0.0f)
                     e = vec3_along(e, look_near(t, light, at, v, u, rays), 1.0f);
                 add(to + 3 * s, e, scale / (float)looks);
                 sum += ((double)e.x + (double)e.y + (double)e.z) / looks;
             }
+            known->last = *likely;
         }
     return sum;
+}
+
+/* At how many places a cell is looked at first: fewer where receivers get little from it. */
+static uint32_t first_places(const lighting *l, uint32_t n) {
+    const double wanted = l->all > 0.0 ? ceil(TRANSPORT_PLACES * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
+    const uint32_t most = l->t->place_count[n];
+    return wanted < 1.0 ? 1 : wanted < most ? (uint32_t)wanted : most;
 }
 
 static void light_cell(void *user, uint32_t n, uint64_t *rays) {
     const lighting *l = user;
     const transport *t = l->t;
     float *to = l->radiosity + (size_t)n * t->columns;
-    const uint32_t places = t->place_count[n];
+    const uint32_t places = first_places(l, n);
     const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
     double sum = 0.0, squares = 0.0;
+    shadows known;
+    memset(&known, 0xff, sizeof known);
     memset(to, 0, t->columns * sizeof *to);
     for (uint32_t p = 0; p < places; p++) {
         const spot at = spot_at(t, t->places + (size_t)n * TRANSPORT_PLACES + p, edge);
-        const double all = light_place(t, &at, n, p * LEAST_SAMPLES, LEAST_SAMPLES, 1.0f / (float)places, to, rays);
+        const double all = light_place(t, &at, n, p * LEAST_SAMPLES, LEAST_SAMPLES, 1.0f / (float)places, to, &known, rays);
         sum += all;
         squares += all * all;
     }
@@ -171,9 +201,11 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
     if (l->more[n] == 0)
         return;
     float *to = l->radiosity + (size_t)n * t->columns;
-    const uint32_t places = t->place_count[n];
+    const uint32_t places = first_places(l, n);
     const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
     uint32_t count = places;
+    shadows known;
+    memset(&known, 0xff, sizeof known);
     for (uint32_t c = 0; c < t->columns; c++)
         to[c] *= (float)places;
     for (uint32_t k = 0; k < l->more[n]; k++) {
@@ -181,7 +213,7 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
         if (!further_place(t, n, k, edge, &p))
             continue;
         const spot at = spot_at(t, &p, edge);
-        light_place(t, &at, n, places * LEAST_SAMPLES + k, 1, 1.0f, to, rays);
+        light_place(t, &at, n, places * LEAST_SAMPLES + k, 1, 1.0f, to, &known, rays);
         count++;
     }
     for (uint32_t c = 0; c < t->columns; c++)
@@ -200,27 +232,22 @@ static uint32_t half_of(const transport *t, uint32_t n) {
 static bool share_out(lighting *l) {
     const transport *t = l->t;
     const uint32_t blocks = 2u * (t->cells.count / BLOCK + 1u);
-    double looks = 0.0, all[2] = {0.0, 0.0}, *variance = calloc(blocks, sizeof *variance);
+    double looks = 0.0, all = 0.0, *variance = calloc(blocks, sizeof *variance);
     uint32_t *count = calloc(blocks, sizeof *count);
     for (uint32_t s = 0; s < t->in->state_count; s++)
         looks += t->in->states[s].count;
     if (variance && count && looks > 0.0) {
-        for (size_t k = 0; k < t->gathers.first[t->gathers.count]; k++)
-            l->weight[t->gathers.to[k]] += t->gathers.factor[k];
         for (uint32_t i = 0; i < t->count; i++) {
             variance[half_of(t, i)] += l->variance[i];
             count[half_of(t, i)]++;
         }
         for (uint32_t b = 0; b < blocks; b++)
             variance[b] = count[b] ? sqrt(variance[b] / count[b]) : 0.0;
-        for (uint32_t i = 0; i < t->count; i++) {
-            all[0] += (double)l->weight[i];
-            all[1] += (double)l->weight[i] * variance[half_of(t, i) ^ 1u];
-        }
-        for (uint32_t i = 0; i < t->count && all[1] > 0.0; i++) {
+        for (uint32_t i = 0; i < t->count; i++)
+            all += (double)l->weight[i] * variance[half_of(t, i) ^ 1u];
+        for (uint32_t i = 0; i < t->count && all > 0.0; i++) {
             const double w = (double)l->weight[i];
-            const double part =
-                (w / all[0] + w * variance[half_of(t, i) ^ 1u] / all[1]) * 0.5 * MORE_LOOKS * t->in->cells / looks;
+            const double part = (w / l->all + w * variance[half_of(t, i) ^ 1u] / all) * 0.5 * MORE_LOOKS * t->in->cells / looks;
             l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
         }
     }
@@ -228,6 +255,14 @@ static bool share_out(lighting *l) {
     free(variance);
     free(count);
     return fine;
+}
+
+static void find_weight(lighting *l) {
+    const transport_rows *g = &l->t->gathers;
+    for (size_t k = 0; k < g->first[g->count]; k++)
+        l->weight[g->to[k]] += g->factor[k];
+    for (uint32_t i = 0; i < l->t->count; i++)
+        l->all += (double)l->weight[i];
 }
 
 static void lighting_step(void *user, double fraction) {
@@ -242,6 +277,7 @@ bool transport_direct(transport *t, float *radiosity) {
     l.more = calloc(t->count + 1u, sizeof *l.more);
     bool fine = l.weight && l.variance && l.more;
     if (fine) {
+        find_weight(&l);
         parallel_work work = {
             .run = light_cell, .done = lighting_step, .user = &l, .step = 1, .count = t->count, .threads = t->in->threads};
         parallel_run(&work, &t->report->light_rays);

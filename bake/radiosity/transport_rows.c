@@ -147,10 +147,6 @@ static void shoot_row(void *user, uint32_t item) {
     const uint32_t row = s->first + item, seed = pcg(row ^ (s->receivers ? 0x2545f491u : 0x9e3779b9u));
     const uint32_t rays = s->receivers ? s->rays : s->row_rays[row];
     found *hits = s->hits + (size_t)item * s->rays;
-    if (s->receivers && in->receivers[row].hangs) { /* its light is not asked for */
-        hits[0].part = VIT_NONE;
-        return;
-    }
     for (uint32_t i = 0; i < rays; i++) {
         transport_place from;
         vec3 about;

@@ -1,10 +1,9 @@
-/* Baked indirect light against closed forms: transport between receivers and light, and receivers' places.
+/* Baked indirect light against closed forms: transport between receivers and light.
  *
  * Why this is hard: rays are random, and light that is lost or made at one step can hide in another's noise. Strategy: closed
  * rooms in which energy is kept, whatever their shape: what a light sends comes to the walls once for each reflection, times
- * the albedo each time, so that sums over evenly spread receivers are powers of the albedo; and a function that is linear on a
- * plane, which interpolation between receivers gives back as far as they are where it takes them to be. */
-#include "photon_room.h"
+ * the albedo each time, so that sums over evenly spread receivers are powers of the albedo. */
+#include "photon_lab.h"
 #include "radiosity/transport.h"
 
 #define PI 3.14159265358979324
@@ -18,26 +17,6 @@ typedef struct effort {
 
 enum { CELLS = 8192 };
 static const effort usual = {24, 128, CELLS, 128 * CELLS};
-
-typedef struct lab {
-    room *r;
-    photon_scene scene;
-    photon_rays rays;
-} lab;
-
-static void open_lab(lab *l, room *r) {
-    room_finish(r, 0, 2);
-    for (uint32_t i = 0; i < r->m.triangles; i++) /* light stays inside; what stands there has two sides */
-        r->g.attributes[i].material |= r->g.attributes[i].material < WALLS ? VIT_SIDE_DARK_BACK : 0;
-    l->r = r;
-    l->scene = room_scene(r);
-    assert_true(photon_rays_open(&l->scene, 1, &l->rays));
-}
-
-static void close_lab(lab *l) {
-    photon_rays_close(&l->rays);
-    room_drop(l->r);
-}
 
 /* evenly^2 places on each side that light reaches, each for a like part of its area. */
 static receiver *spread_receivers(const lab *l, uint32_t evenly, uint32_t *count) {
@@ -234,209 +213,6 @@ static void light_from_very_near_is_kept(void **state) {
     close_lab(&l);
 }
 
-/* ---- receivers ---- */
-
-/* Cameras in the room's middle that see all walls. */
-static const vit_camera *look_about(void) {
-    static vit_camera cameras[6];
-    for (int i = 0; i < 6; i++) {
-        vit_camera *c = &cameras[i];
-        const int axis = i / 2, across = (axis + 1) % 3, down = (axis + 2) % 3;
-        memset(c, 0, sizeof *c);
-        c->corner[axis] = i % 2 ? 1.0f : -1.0f;
-        c->corner[across] = c->corner[down] = -1.0f;
-        c->right[across] = c->down[down] = 2.0f / 64.0f;
-    }
-    return cameras;
-}
-
-static double linear(vec3 p) {
-    return 1.0 + 0.6 * (double)p.x - 0.3 * (double)p.y + 0.2 * (double)p.z;
-}
-
-/* The weights of a place between a cell's corners. */
-static void weigh(const cell_corners *c, float b1, float b2, double w[3]) {
-    const double x1 = (double)(c->b1[1] - c->b1[0]), y1 = (double)(c->b2[1] - c->b2[0]), x2 = (double)(c->b1[2] - c->b1[0]),
-                 y2 = (double)(c->b2[2] - c->b2[0]), x = (double)(b1 - c->b1[0]), y = (double)(b2 - c->b2[0]);
-    w[1] = (x * y2 - y * x2) / (x1 * y2 - y1 * x2);
-    w[2] = (y * x1 - x * y1) / (x1 * y2 - y1 * x2);
-    w[0] = 1 - w[1] - w[2];
-}
-
-static const cell_corners whole = {{0, 1, 0}, {0, 0, 1}};
-
-/* Where a look-up ends: a cell or a part of one, its corners and those of the cell, and the weights between the former. */
-typedef struct looked_up {
-    const vit_receiver_cell *cell;
-    cell_corners at, of_cell;
-    double w[3];
-} looked_up;
-
-static looked_up look_up(const receivers *found, uint32_t side, float b1, float b2) {
-    const cells all = {.sides = found->sides};
-    const uint32_t parts = found->sides[side] >> VIT_SIDE_PARTS_SHIFT, first = found->sides[side] & VIT_SIDE_CELL,
-                   k = cells_at(&all, side, b1, b2);
-    looked_up r = {.cell = found->cells + k, .at = cells_within(&whole, parts, k - first)};
-    r.of_cell = r.at;
-    weigh(&r.at, b1, b2, r.w);
-    if (!VIT_RECEIVER_IS_DIVIDED(r.cell->split))
-        return r;
-    vit_u32 parted = (r.cell->split & ~VIT_RECEIVER_DIVIDED) << VIT_SIDE_PARTS_SHIFT;
-    const cells within = {.sides = &parted};
-    const uint32_t part = cells_at(&within, 0, (float)r.w[1], (float)r.w[2]);
-    r.at = cells_within(&r.at, parted >> VIT_SIDE_PARTS_SHIFT, part);
-    r.cell = found->cells + r.cell->receiver[0] + part;
-    weigh(&r.at, b1, b2, r.w);
-    return r;
-}
-
-/* The largest error of what is interpolated between receivers that have linear(), over what it changes by along a cell's edge:
- * how far receivers are from the corners that they stand for, in edges. */
-static double worst_of_linear(const lab *l, const receivers *found) {
-    double worst = 0.0;
-    for (uint32_t s = 0; s < 2 * l->r->m.triangles; s += 2)
-        for (uint32_t i = 0; i < 4096; i++) {
-            float b1 = (float)(i % 64 + 0.5) / 64, b2 = (float)(i / 64 + 0.5) / 64;
-            if (b1 + b2 >= 1) {
-                b1 = 1 - b1;
-                b2 = 1 - b2;
-            }
-            const looked_up at = look_up(found, s, b1, b2);
-            double sum = 0.0, lo = INFINITY, hi = -INFINITY;
-            for (int k = 0; k < 3; k++) {
-                const receiver *r = found->receivers + at.cell->receiver[k];
-                const double corner = linear(side_place(&l->r->g, s, at.of_cell.b1[k], at.of_cell.b2[k]));
-                assert_int_equal(r->side % 2, 0);
-                sum += at.w[k] * linear(side_place(&l->r->g, r->side, r->b1, r->b2));
-                lo = fmin(lo, corner);
-                hi = fmax(hi, corner);
-            }
-            worst = fmax(worst, fabs(sum - linear(side_place(&l->r->g, s, b1, b2))) / (hi - lo));
-        }
-    return worst;
-}
-
-static void receivers_of_a_plane_interpolate_what_is_linear(void **state) {
-    (void)state;
-    static const float spacings[] = {2.5f, 6.0f, 12.0f, 24.0f};
-    lab l;
-    open_lab(&l, room_closed(0.5f));
-    const tracks t = {.cameras = (vit_camera *)(uintptr_t)look_about()};
-    for (size_t i = 0; i < sizeof spacings / sizeof *spacings; i++) {
-        const receivers_input in = {.rays = &l.rays,
-                                    .geometry = &l.r->g,
-                                    .tracks = &t,
-                                    .frames = 6,
-                                    .width = 64,
-                                    .height = 64,
-                                    .size = 2.0f,
-                                    .spacing = spacings[i],
-                                    .most = 100000};
-        receivers found;
-        vit_text why = {""};
-        assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
-        assert_int_equal(found.split_count, 0);
-        const double worst = worst_of_linear(&l, &found);
-        print_message("spacing %g: %u receivers of %u cells, off by %.4f of what a cell changes\n", (double)spacings[i],
-                      found.count, found.cell_count, worst);
-        assert_true(worst < 0.03); /* corners are pulled in by 0.04 of the way to the middle, so that each sees its cell */
-        receivers_free(&found);
-    }
-    close_lab(&l);
-}
-
-/* Light that changes much near a place of the floor, and hardly elsewhere. */
-static vit_status look_at_a_spot(void *user, const receiver *places, uint32_t count, float *irradiance, vit_text *why) {
-    const lab *l = user;
-    (void)why;
-    for (uint32_t i = 0; i < count; i++) {
-        const vec3 way = vec3_sub(side_place(&l->r->g, places[i].side, places[i].b1, places[i].b2), (vec3){0.3f, -1.0f, 0.2f});
-        irradiance[i] = 1.0f / (vec3_dot(way, way) + 0.02f);
-    }
-    return VIT_OK;
-}
-
-/* What a receiver has, from one of its own or from those that it hangs between. */
-static double *values_of(const receivers *found) {
-    double *value = calloc(found->count + 1u, sizeof *value);
-    assert_non_null(value);
-    for (uint32_t i = 0; i < found->count; i++)
-        value[i] = (double)unit_float(pcg(i));
-    for (uint32_t i = 0; i < found->hanging_count; i++) {
-        const receiver_hanging *h = found->hanging + i;
-        assert_true(found->receivers[h->receiver].hangs);
-        value[h->receiver] = value[h->from[0]] * (1 - (double)h->weight) + value[h->from[1]] * (double)h->weight;
-    }
-    return value;
-}
-
-static double value_at(const receivers *found, const double *value, uint32_t side, float b1, float b2) {
-    const looked_up at = look_up(found, side, b1, b2);
-    double sum = 0.0;
-    for (int k = 0; k < 3; k++)
-        sum += at.w[k] * value[at.cell->receiver[k]];
-    return sum;
-}
-
-/* The largest jump of values across edges of cells. */
-static double worst_jump(const receivers *found, const double *value, uint32_t side) {
-    const uint32_t n = found->sides[side] >> VIT_SIDE_PARTS_SHIFT;
-    const float off = 2e-6f;
-    double worst = 0.0;
-    for (uint32_t i = 1; i < n; i++)
-        for (uint32_t k = 1; k < 512; k++) {
-            const float a = (float)i / (float)n, b = (float)k / 512 * (1 - a), c = (float)k / 512 * a;
-            const double across[3] = {value_at(found, value, side, a - off, b) - value_at(found, value, side, a + off, b),
-                                      value_at(found, value, side, b, a - off) - value_at(found, value, side, b, a + off),
-                                      value_at(found, value, side, a - c - off, c) -
-                                          value_at(found, value, side, a - c + off, c)};
-            for (int e = 0; e < 3; e++)
-                worst = fmax(worst, fabs(across[e]));
-        }
-    return worst;
-}
-
-/* Receivers with values of no order: neighbours that are divided less often say what lies on common edges, so nothing jumps.
- * And what is linear comes back, within the parts, too. */
-static void divided_cells_fit_together(void **state) {
-    (void)state;
-    lab l;
-    open_lab(&l, room_closed(0.5f));
-    const tracks t = {.cameras = (vit_camera *)(uintptr_t)look_about()};
-    const receivers_input in = {.rays = &l.rays,
-                                .geometry = &l.r->g,
-                                .tracks = &t,
-                                .frames = 6,
-                                .width = 64,
-                                .height = 64,
-                                .size = 2.0f,
-                                .spacing = 12.0f,
-                                .most = 100000,
-                                .look = look_at_a_spot,
-                                .user = &l,
-                                .columns = 1};
-    receivers found;
-    vit_text why = {""};
-    uint32_t divided[VIT_RECEIVER_PARTS + 1] = {0};
-    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
-    for (uint32_t i = 0; i < found.cell_count; i++)
-        if (VIT_RECEIVER_IS_DIVIDED(found.cells[i].split))
-            divided[found.cells[i].split & ~VIT_RECEIVER_DIVIDED]++;
-    print_message("%u, %u and %u cells in 2, 4 and 8 parts each way, %u of %u receivers hang\n", divided[2], divided[4],
-                  divided[8], found.hanging_count, found.count);
-    assert_true(divided[2] > 0 && divided[4] > 0 && found.hanging_count > 0);
-    double *value = values_of(&found);
-    for (uint32_t s = 0; s < 2 * l.r->m.triangles; s += 2) {
-        const double jump = worst_jump(&found, value, s);
-        if (!(jump < 0.01))
-            fail_msg("side %u: values jump by %g between cells", s, jump);
-    }
-    assert_true(worst_of_linear(&l, &found) < 0.03);
-    free(value);
-    receivers_free(&found);
-    close_lab(&l);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_closed_room_keeps_its_light),
@@ -445,8 +221,6 @@ int main(void) {
         cmocka_unit_test(small_spots_that_are_mostly_missed_are_kept),
         cmocka_unit_test(rays_that_meet_unknown_cells_lose_no_light),
         cmocka_unit_test(light_from_very_near_is_kept),
-        cmocka_unit_test(receivers_of_a_plane_interpolate_what_is_linear),
-        cmocka_unit_test(divided_cells_fit_together),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
 }
