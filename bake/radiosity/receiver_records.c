@@ -151,7 +151,11 @@ static void follow(void *user, uint32_t index) {
     const place here = place_of(w->p, index);
     receiver_follower *f = w->follower + index;
     f->receiver = index;
-    weigh(w, &here, find_near(w, &here, WIDER, RECEIVER_FROM, f->from), f);
+    uint32_t near[RECEIVER_FROM];
+    const uint32_t count = find_near(w, &here, WIDER, RECEIVER_FROM, near);
+    if (count > 0) /* else too many that are hidden are nearer, and the record that it was found by stays */
+        memcpy(f->from, near, sizeof near);
+    weigh(w, &here, count > 0 ? count : 1, f);
 }
 
 static void add_record(records *w, uint32_t index) {
@@ -177,8 +181,7 @@ bool receivers_find_records(placing *p) {
         memset(w.head, 0xff, w.slots * sizeof *w.head);
         for (uint32_t i = 0; i < o->count; i++) {
             const place here = place_of(p, i);
-            uint32_t one;
-            o->receivers[i].follows = here.reach > 0.0f && find_near(&w, &here, 1.0f, 1, &one) > 0;
+            o->receivers[i].follows = here.reach > 0.0f && find_near(&w, &here, 1.0f, 1, w.follower[i].from) > 0;
             if (here.reach > 0.0f && !o->receivers[i].follows)
                 add_record(&w, i);
         }
