@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define MOST_RECEIVERS 196608u
+#define MOST_RECORDS 49152u
 #define CELLS_PER_RECEIVER 4u /* of surfaces that light comes from, about */
 #define CELLS_LEAST 8192u
 #define CELLS_MOST 65536u
@@ -232,6 +233,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .within = in->within,
                                    .spacing = (float)in->spacing,
                                    .most = MOST_RECEIVERS,
+                                   .records = MOST_RECORDS,
                                    .threads = in->threads,
                                    .look = look_first,
                                    .user = &f,

@@ -1,23 +1,25 @@
 /* Which receivers' light is computed. Where triangles are small, or a side is hardly seen, many receivers lie closer to each
- * other than the cameras call for: some of them are records, and the others' light follows from that of records round about
- * (irradiance caching: Ward et al. 1988; here the records' places are chosen first). After a first look at the light, those
- * whose records differ become records, too. */
+ * other than the cameras call for. If there are too many, some of them are records, and the others' light follows from that of
+ * records round about (irradiance caching: Ward et al. 1988; here the records' places are chosen first). After a first look at
+ * the light, those whose records differ become records, too. */
 #include "common/parallel.h"
 #include "radiosity/receivers_parts.h"
 #include <stdlib.h>
 #include <string.h>
 
-#define ALIKE 0.85f      /* cosine of the normals of a record and of what follows from it, at least */
-#define PLANE 0.5f       /* of the reach: how far off each other's planes they may lie */
-#define WIDER 2.0f       /* reaches: records as far as that are taken besides the one that is near enough */
-#define STIFF 0.05f      /* how much a slope of the light costs, against what records say of it */
-#define STEP 0.3f        /* of the records' mean: where they differ more, the receiver becomes one */
-#define DIM 0.02f        /* of the mean of all: less counts as so much */
-#define MOST_NEAR 64u    /* records that are looked at for a receiver */
-#define LEAST_PART 0.05f /* of the light: records of less say nothing of a step */
+#define ALIKE 0.85f       /* cosine of the normals of a record and of what follows from it, at least */
+#define PLANE 0.5f        /* of the reach: how far off each other's planes they may lie */
+#define WIDER 2.0f        /* reaches: records as far as that are taken besides the one that is near enough */
+#define STIFF 0.05f       /* how much a slope of the light costs, against what records say of it */
+#define STEP 0.3f         /* of the records' mean: where they differ more, the receiver becomes one */
+#define DIM 0.02f         /* of the mean of all: less counts as so much */
+#define MOST_NEAR 64u     /* records that are looked at for a receiver */
+#define LEAST_SCALE 0.25f /* of reaches, which double until there are few enough records */
+#define LEAST_PART 0.05f  /* of the light: records of less say nothing of a step */
 
 typedef struct records {
     const placing *p;
+    float scale;                 /* of all reaches */
     uint32_t *head;              /* a slot: the last record in it, or VIT_NONE */
     uint32_t *next;              /* a record: the one before it in its slot, or VIT_NONE */
     uint32_t slots;              /* a power of two */
@@ -29,13 +31,14 @@ typedef struct place {
     float reach, lift;
 } place;
 
-static place place_of(const placing *p, uint32_t index) {
+static place place_of(const records *w, uint32_t index) {
+    const placing *p = w->p;
     const receiver *r = p->out->receivers + index;
     const geometry *g = p->in->geometry;
     return (place){.at = side_place(g, r->side, r->b1, r->b2),
                    .normal = side_shading(g, r->side, r->b1, r->b2),
                    .face = side_face(g, r->side),
-                   .reach = r->reach,
+                   .reach = r->reach * w->scale,
                    .lift = separation_lift(p->in->rays, p->spacing[r->side])};
 }
 
@@ -83,7 +86,7 @@ static uint32_t find_near(const records *w, const place *here, float reaches, ui
             for (c[1] = low[1]; c[1] <= high[1]; c[1]++)
                 for (c[2] = low[2]; c[2] <= high[2]; c[2]++)
                     for (uint32_t i = w->head[slot_of(w, level, c)]; i != VIT_NONE; i = w->next[i]) {
-                        const place there = place_of(w->p, i);
+                        const place there = place_of(w, i);
                         const vec3 way = vec3_sub(there.at, here->at);
                         const float d2 = vec3_dot(way, way);
                         uint32_t k = count < MOST_NEAR ? count : MOST_NEAR - 1;
@@ -103,7 +106,7 @@ static uint32_t find_near(const records *w, const place *here, float reaches, ui
                     }
     }
     for (uint32_t k = 0; k < count && kept < most; k++) {
-        const place there = place_of(w->p, found[k]);
+        const place there = place_of(w, found[k]);
         if (sees(w->p, here, &there))
             near[kept++] = found[k];
     }
@@ -117,7 +120,7 @@ static void weigh(const records *w, const place *here, uint32_t count, receiver_
     double part[RECEIVER_FROM], x[RECEIVER_FROM], y[RECEIVER_FROM], s = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0, all = 0;
     vec3_across(here->normal, &across, &up);
     for (uint32_t k = 0; k < count; k++) {
-        const vec3 way = vec3_scale(vec3_sub(place_of(w->p, f->from[k]).at, here->at), 1.0f / (here->reach * WIDER));
+        const vec3 way = vec3_scale(vec3_sub(place_of(w, f->from[k]).at, here->at), 1.0f / (here->reach * WIDER));
         const double beyond = 1.001 - (double)sqrtf(vec3_dot(way, way));
         x[k] = (double)vec3_dot(way, across);
         y[k] = (double)vec3_dot(way, up);
@@ -148,7 +151,7 @@ static void follow(void *user, uint32_t index) {
     const records *w = user;
     if (!w->p->out->receivers[index].follows)
         return;
-    const place here = place_of(w->p, index);
+    const place here = place_of(w, index);
     receiver_follower *f = w->follower + index;
     f->receiver = index;
     uint32_t near[RECEIVER_FROM];
@@ -159,7 +162,7 @@ static void follow(void *user, uint32_t index) {
 }
 
 static void add_record(records *w, uint32_t index) {
-    const place here = place_of(w->p, index);
+    const place here = place_of(w, index);
     int32_t cube[3];
     const int level = level_of(here.reach);
     cube_of(here.at, level, cube);
@@ -168,9 +171,26 @@ static void add_record(records *w, uint32_t index) {
     w->head[slot] = index;
 }
 
+/* Returns how many records there are. */
+static uint32_t choose_records(records *w) {
+    receivers *o = w->p->out;
+    uint32_t count = 0;
+    memset(w->head, 0xff, w->slots * sizeof *w->head);
+    for (uint32_t i = 0; i < o->count; i++) {
+        const place here = place_of(w, i);
+        o->receivers[i].follows = here.reach > 0.0f && find_near(w, &here, 1.0f, 1, w->follower[i].from) > 0;
+        if (here.reach > 0.0f && !o->receivers[i].follows)
+            add_record(w, i);
+        count += !o->receivers[i].follows;
+    }
+    return count;
+}
+
 bool receivers_find_records(placing *p) {
     receivers *o = p->out;
-    records w = {.p = p, .slots = 1024};
+    records w = {.p = p, .scale = LEAST_SCALE, .slots = 1024};
+    if (o->count <= p->in->records)
+        return true;
     while (w.slots < o->count && w.slots < 1u << 30)
         w.slots *= 2;
     w.head = malloc(w.slots * sizeof *w.head);
@@ -178,13 +198,8 @@ bool receivers_find_records(placing *p) {
     w.follower = malloc((o->count + 1u) * sizeof *w.follower);
     const bool fine = w.head && w.next && w.follower;
     if (fine) {
-        memset(w.head, 0xff, w.slots * sizeof *w.head);
-        for (uint32_t i = 0; i < o->count; i++) {
-            const place here = place_of(p, i);
-            o->receivers[i].follows = here.reach > 0.0f && find_near(&w, &here, 1.0f, 1, w.follower[i].from) > 0;
-            if (here.reach > 0.0f && !o->receivers[i].follows)
-                add_record(&w, i);
-        }
+        while (choose_records(&w) > p->in->records && w.scale < 1.0f)
+            w.scale *= 2.0f;
         parallel_for(p->in->threads, o->count, follow, &w);
         for (uint32_t i = 0; i < o->count; i++)
             if (o->receivers[i].follows)

@@ -21,6 +21,7 @@ typedef struct receivers_input {
     float spacing;                  /* pixels between receivers where a camera comes nearest */
     bool within;                    /* samples are taken within pixels, not in their middles alone */
     uint32_t most;                  /* receivers wanted at most: the spacing grows until they are no more, or nearly so */
+    uint32_t records;               /* whose light is computed for the first look, about: above that others follow them */
     unsigned threads;               /* 0: all cores; changes no byte */
     /* A first look at the light of receivers, roughly: receivers x columns. Cells whose corners differ much are divided. NULL:
      * none is. */

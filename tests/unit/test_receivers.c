@@ -194,6 +194,7 @@ static void divided_cells_fit_together(void **state) {
                                 .size = 2.0f,
                                 .spacing = 12.0f,
                                 .most = 100000,
+                                .records = 100000,
                                 .look = look_at_a_spot,
                                 .user = &l,
                                 .columns = 1};
@@ -253,6 +254,7 @@ static void what_lies_near_records_follows_them_where_light_is_even(void **state
                           .size = 2.0f,
                           .spacing = 14.0f,
                           .most = 100000,
+                          .records = 300,
                           .look = look_evenly,
                           .columns = 1};
     receivers even, spot;
