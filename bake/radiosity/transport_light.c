@@ -20,6 +20,7 @@ typedef struct lighting {
     float *radiosity;
     float *weight;    /* a number: how much of its light receivers get, summed */
     double all;       /* of weight, summed */
+    double looks;     /* that a place takes, at least: lights of all states */
     double *variance; /* a number: of one sample, all columns added up */
     uint32_t *more;   /* a number: further samples */
     bool again;       /* these are taken */
@@ -147,9 +148,9 @@ static double light_place(const transport *t, const spot *at, uint32_t seed, uin
     return sum;
 }
 
-/* At how many places a cell is looked at first: fewer where receivers get little from it. */
+/* At how many places a cell is looked at first: fewer where receivers get little from it and looks are many. */
 static uint32_t first_places(const lighting *l, uint32_t n) {
-    const double wanted = l->all > 0.0 ? ceil(TRANSPORT_PLACES * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
+    const double wanted = l->all > 0.0 ? ceil(MORE_LOOKS / l->looks * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
     const uint32_t most = l->t->place_count[n];
     return wanted < 1.0 ? 1 : wanted < most ? (uint32_t)wanted : most;
 }
@@ -232,11 +233,9 @@ static uint32_t half_of(const transport *t, uint32_t n) {
 static bool share_out(lighting *l) {
     const transport *t = l->t;
     const uint32_t blocks = 2u * (t->cells.count / BLOCK + 1u);
-    double looks = 0.0, all = 0.0, *variance = calloc(blocks, sizeof *variance);
+    double all = 0.0, *variance = calloc(blocks, sizeof *variance);
     uint32_t *count = calloc(blocks, sizeof *count);
-    for (uint32_t s = 0; s < t->in->state_count; s++)
-        looks += t->in->states[s].count;
-    if (variance && count && looks > 0.0) {
+    if (variance && count && l->looks > 0.0) {
         for (uint32_t i = 0; i < t->count; i++) {
             variance[half_of(t, i)] += l->variance[i];
             count[half_of(t, i)]++;
@@ -247,7 +246,8 @@ static bool share_out(lighting *l) {
             all += (double)l->weight[i] * variance[half_of(t, i) ^ 1u];
         for (uint32_t i = 0; i < t->count && all > 0.0; i++) {
             const double w = (double)l->weight[i];
-            const double part = (w / l->all + w * variance[half_of(t, i) ^ 1u] / all) * 0.5 * MORE_LOOKS * t->in->cells / looks;
+            const double part =
+                (w / l->all + w * variance[half_of(t, i) ^ 1u] / all) * 0.5 * MORE_LOOKS * t->in->cells / l->looks;
             l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
         }
     }
@@ -263,6 +263,8 @@ static void find_weight(lighting *l) {
         l->weight[g->to[k]] += g->factor[k];
     for (uint32_t i = 0; i < l->t->count; i++)
         l->all += (double)l->weight[i];
+    for (uint32_t s = 0; s < l->t->in->state_count; s++)
+        l->looks += l->t->in->states[s].count;
 }
 
 static void lighting_step(void *user, double fraction) {
