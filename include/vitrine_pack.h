@@ -17,6 +17,7 @@
 
 #include "../kernels/counters.clh"
 #include "../kernels/records.clh"
+#include "../kernels/transfer_code.clh"
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */

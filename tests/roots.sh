@@ -13,10 +13,11 @@ mkdir -p "$roots"
 make_root() { # release
     [ ! -x "$roots/$1/usr/bin/gcc" ] || return 0
     case $1 in
-    noble) set -- "$1" --no-check-gpg --components=main,universe http://archive.ubuntu.com/ubuntu /usr/share/debootstrap/scripts/gutsy ;;
-    *) set -- "$1" --components=main --components=main http://deb.debian.org/debian ;;
+    noble) set -- "$1" --no-check-gpg --components=main,universe /usr/share/debootstrap/scripts/gutsy ;; # Debian 12 does not know it by name
+    *) set -- "$1" --force-check-gpg --components=main "" ;;
     esac
-    debootstrap --variant=minbase "--include=$packages" "$2" "$3" "$1" "$roots/$1" "$4" ${5:+"$5"} > "$roots/$1.log" 2>&1
+    # No mirror is named: the script's own is taken.
+    debootstrap --variant=minbase "--include=$packages" "$2" "$3" "$1" "$roots/$1" "" ${4:+"$4"} > "$roots/$1.log" 2>&1
 }
 build_there() { # release
     mkdir -p "$roots/$1/src" "$roots/$1/models"

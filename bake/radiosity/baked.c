@@ -189,7 +189,8 @@ static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, float
     for (uint32_t i = r->count; i-- > 0 && status == VIT_OK;)
         if (!r->receivers[i].follows)
             memmove(irradiance + (size_t)i * columns, irradiance + (size_t)--count * columns, columns * sizeof *irradiance);
-    receivers_follow(r, irradiance, columns);
+    if (status == VIT_OK)
+        receivers_follow(r, irradiance, columns);
     return status;
 }
 

@@ -1,5 +1,5 @@
 /* codec.c: transfer matrices as few bytes, from which the product with the patches' light is computed directly. The layout is
- * vit_transfer's (records.clh). */
+ * vit_transfer's (transfer_code.clh). */
 #ifndef VIT_RADIOSITY_CODEC_H
 #define VIT_RADIOSITY_CODEC_H
 

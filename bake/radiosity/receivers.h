@@ -1,8 +1,8 @@
 /* receivers.c: places on surfaces whose irradiance is baked, at the corners of cells as large as what the cameras see of them
- * allows, or where light changes much within
- * one, smaller. A sample takes its cell's three; cells that share a corner share its receiver, so that light is
- * continuous. Where something stands on a cell, as a wall on a floor that goes on beneath it, a plane parts it, and each side
- * has receivers of its own. */
+ * allows, or where light changes much within one, smaller. A sample takes its cell's three; cells that share a corner share its
+ * receiver, so that light is continuous. Where something stands on a cell, as a wall on a floor that goes on beneath it, a
+ * plane parts it, and each side has receivers of its own. Where there are too many, light is computed at some, and others
+ * follow. */
 #ifndef VIT_RADIOSITY_RECEIVERS_H
 #define VIT_RADIOSITY_RECEIVERS_H
 

@@ -2,22 +2,12 @@
  * ../shared/cases, baked and played by the real programs. The right values are worked out by hand beside each. Like files are
  * made by tests of their own (test_lamp_over_floor, test_import_materials, test_import_transparency), so that nothing is lost
  * where the folder is not at hand. */
+#include "case_file.h"
 #include "scene_lab.h"
 
 #include <math.h>
 
 enum { WIDTH = 64, HEIGHT = 36, WIDE = 240, HIGH = 135 }; /* pixels; the latter as the scene file of the highlights says */
-
-/* Full path of a file of the cases; NULL, after a message, if it is not there. */
-static const char *case_file(const char *name) {
-    static char path[256];
-    const char *folder = getenv("VITRINE_CASES");
-    (void)snprintf(path, sizeof path, "%s/%s", folder ? folder : "../shared/cases", name);
-    if (access(path, R_OK) == 0)
-        return path;
-    (void)printf("no %s: skipped\n", path);
-    return NULL;
-}
 
 static void bake_aloud(scene_lab *l, const char *file, const char *options) {
     char line[512];

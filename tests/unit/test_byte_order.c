@@ -2,7 +2,7 @@
  * s390x.
  *
  * Strategy: a wrong or a missing swap shows against bytes reversed one by one, and twice is the identity. That one word size
- * covers every record is read from the text of records.clh, since C cannot list a struct's fields. */
+ * covers every record is read from the text of the kernels' headers, since C cannot list a struct's fields. */
 #include "byte_order.h"
 #include "pack_image.h"
 
@@ -87,15 +87,12 @@ static void the_one_field_of_two_words_comes_out_whole(void **state) {
     assert_true(t.effects == 0x1817161514131211u);
 }
 
-/* Declarations of records.clh between "typedef struct" and "}" must begin with a type of 32 bits; one may
- * take several lines. */
-static void every_field_of_every_record_is_a_word(void **state) {
-    (void)state;
+/* Declarations between "typedef struct" and "}" must begin with a type of 32 bits; one may take several lines. */
+static void expect_words(const char *path, int *records, int *fields) {
     static const char *const types[] = {"vit_u32", "vit_i32", "float"};
     char line[512], type[64];
-    int inside = 0, records = 0, fields = 0, comment = 0, goes_on = 0;
-    assert_true(sizeof(vit_u32) == VIT_WORD && sizeof(vit_i32) == VIT_WORD && sizeof(float) == VIT_WORD);
-    FILE *f = fopen("kernels/records.clh", "r");
+    int inside = 0, comment = 0, goes_on = 0;
+    FILE *f = fopen(path, "r");
     assert_non_null(f);
     while (fgets(line, sizeof line, f)) {
         const int skip = comment || sscanf(line, " %60[/*]", type) == 1; /* a comment of its own lines */
@@ -109,14 +106,23 @@ static void every_field_of_every_record_is_a_word(void **state) {
                 continue;
             if (strcmp(type, types[0]) != 0 && strcmp(type, types[1]) != 0 && strcmp(type, types[2]) != 0)
                 fail_msg("a record has a field of type %s", type);
-            fields++;
+            ++*fields;
         }
         if (strncmp(line, "typedef struct", 14) == 0) {
             inside = 1;
-            records++;
+            ++*records;
         }
     }
     (void)fclose(f);
+}
+
+static void every_field_of_every_record_is_a_word(void **state) {
+    (void)state;
+    int records = 0, fields = 0, codes = 0;
+    assert_true(sizeof(vit_u32) == VIT_WORD && sizeof(vit_i32) == VIT_WORD && sizeof(float) == VIT_WORD);
+    expect_words("kernels/records.clh", &records, &fields);
+    expect_words("kernels/transfer_code.clh", &codes, &fields);
+    assert_int_equal(codes, 1);
     assert_true(records >= 12 && fields > 60);
 #define X(code, type, records) assert_int_equal(sizeof(type) % VIT_WORD, 0);
     VIT_SECTIONS(X)

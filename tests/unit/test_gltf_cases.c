@@ -2,18 +2,8 @@
  * worked out by hand in their READMEs. Files like them are made by test_gltf_accessors.c, test_gltf_scene.c and
  * test_import_gltf_materials.c, so that nothing is lost where the folder is not at hand. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/gltf_cases"
+#include "case_file.h"
 #include "gltf_lab.h"
-
-/* NULL, after a message, if it is not there. */
-static const char *case_file(const char *name) {
-    static char path[256];
-    const char *folder = getenv("VITRINE_CASES");
-    (void)snprintf(path, sizeof path, "%s/%s", folder ? folder : "../shared/cases", name);
-    if (access(path, R_OK) == 0)
-        return path;
-    (void)printf("no %s: skipped\n", path);
-    return NULL;
-}
 
 /* Skips the test if the case is not there. */
 static const char *import_case(const char *name, model *m) {
