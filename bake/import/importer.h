@@ -152,6 +152,14 @@ void import_multiply(const double a[12], const double b[12], double out[12]);
  * position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of memory. */
 bool import_normals(const float *position, const uint32_t *corner, size_t triangles, float *normal);
 
+/* import_polygon.c: cuts a polygon of `count` corners, 3..IMPORT_CORNERS, which are vertices of `position`, into count - 2
+ * triangles: three of 0..count - 1 each. */
+void import_cut_polygon(const mesh_floats *position, const uint32_t *corner, unsigned count, uint32_t *triangle);
+
+/* import_number.c: the decimal number that begins at `at`: where it ends, or NULL if there is none. It is the double nearest to
+ * what is written, or with `single` the float nearest to it, whatever the locale. Also "inf", "nan" and MSVC's "1.#QNAN". */
+const char *import_number(const char *at, const char *end, bool single, double *out);
+
 /* ---- import_material.c ---- */
 
 /* The use of material `source` with vertex colour `tint`; false: out of memory, or what the format's reader says. The pointer

@@ -33,6 +33,9 @@ typedef struct fuzz_files {
 } fuzz_files;
 void fuzz_write_files(fuzz_files *f, const uint8_t *data, size_t size);
 
+/* model.c: imports a mesh file in this process. */
+void fuzz_import(const char *file);
+
 /* mesh.c: every input goes through all steps. */
 extern bool fuzz_mesh_whole;
 
