@@ -50,6 +50,8 @@ obj = $(patsubst %.c,$(B)/%.o,$(1))
 # All of vitrine-bake and vitrine-cost but their mains.
 BAKE_PARTS := $(filter-out bake/main.c bake/cost/main.c,$(BAKE))
 BAKE_OBJECTS := $(call obj,$(BAKE_PARTS)) $(BAKE_CXX:%.cc=$(B)/%.o) $(B)/report_files.o
+# As an archive: a program is linked with those that it calls alone, which takes a fifth of the time.
+BAKE_ARCHIVE := $(B)/libbake.a
 # Libraries. Embree 3 or 4, whichever is installed.
 EMBREE := $(shell for v in 4 3; do [ -e /usr/include/embree$$v/rtcore.h ] && { echo $$v; break; }; done)
 LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
@@ -134,14 +136,16 @@ $(B)/%.o: %.cc
 	@mkdir -p $(@D)
 	$(CXX) -std=c++17 -Wall -Wextra -Werror -ffp-contract=off -MMD -MP -Ibake $(OPT) -fno-sanitize=vptr $(CXXFLAGS) -c $< -o $@
 
+$(BAKE_ARCHIVE): $(BAKE_OBJECTS)
 $(B)/libvitrine.a: $(call obj,$(RUNTIME)) $(HOST_OBJECTS) $(if $(filter 0,$(OPENCL)),,$(B)/kernel_sources.o)
+$(BAKE_ARCHIVE) $(B)/libvitrine.a:
 	@rm -f $@
 	$(AR) rcs $@ $^
 $(B)/vitrine-play: $(call obj,$(PLAY)) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_PLAY) -o $@
-$(B)/vitrine-bake: $(call obj,bake/main.c) $(BAKE_OBJECTS) $(B)/libvitrine.a
+$(B)/vitrine-bake: $(call obj,bake/main.c) $(BAKE_ARCHIVE) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
-$(B)/vitrine-cost: $(call obj,bake/cost/main.c) $(BAKE_OBJECTS) $(B)/libvitrine.a
+$(B)/vitrine-cost: $(call obj,bake/cost/main.c) $(BAKE_ARCHIVE) $(B)/libvitrine.a
 	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(B)/make-scenes: $(call obj,$(SCENES))
 	$(CC) $(OPT) $^ -lpng -lm -o $@

@@ -12,7 +12,7 @@ $(B)/tests/fuzz/test_fuzz_corpus: $(call obj,$(FUZZ_PARTS))
 $(FUZZ:%=$(B)/tests/fuzz/driver_%.o): $(B)/tests/fuzz/driver_%.o: tests/fuzz/targets/driver.c
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_ALL) -DFUZZ_TARGET=$* $(if $(filter pack,$*),-DFUZZ_SCRIPT) -c $< -o $@
-$(FUZZERS): $(B)/fuzz_%: $(B)/tests/fuzz/driver_%.o $(call obj,$(FUZZ_PARTS)) $(BAKE_OBJECTS) $(B)/libvitrine.a
+$(FUZZERS): $(B)/fuzz_%: $(B)/tests/fuzz/driver_%.o $(call obj,$(FUZZ_PARTS)) $(BAKE_ARCHIVE) $(B)/libvitrine.a
 	$(CC) $(OPT) -fsanitize=fuzzer $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 
 .PHONY: fuzz build-fuzz run-fuzz $(FUZZ:%=run-fuzz-%)

@@ -20,7 +20,7 @@ $(NUMERIC_PROGRAMS) $(addprefix $(B)/tests/unit/test_,transfer_kernel receivers_
 # Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
-$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
+$(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_ARCHIVE) $(B)/libvitrine.a
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 # Calls of our own objects that these tests want to see.
 $(B)/tests/golden/test_no_allocation: private WRAPPED := malloc calloc realloc free aligned_alloc fopen fopen64 open open64 printf fprintf \
@@ -42,8 +42,8 @@ $(B)/tests/golden/test_public_header: $(B)/vitrine.pc
 $(B)/tests/unit/test_budget_verdict: $(addprefix $(B)/runtime/play/,budget.o failure.o machine_load.o pacing.o report.o times.o)
 # It casts rays with the tests' laboratory.
 $(B)/tests/bench/bench_octree $(B)/tests/bench/bench_transfer: private LIBS_COST += -lcmocka
-$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_OBJECTS) $(B)/libvitrine.a
-	$(CC) $(OPT) $^ $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
+$(BENCH_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_ARCHIVE) $(B)/libvitrine.a
+	$(CC) $(OPT) $(filter %.o,$^) $(filter %.a,$^) $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@
 $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
