@@ -1,10 +1,11 @@
 #include "import/assimp/assimp.h"
 #include "import/gltf/gltf.h"
 #include "import/import_format.h"
+#include "import/obj/obj.h"
 #include <string.h>
 #include <strings.h>
 
-const import_format *const import_formats[] = {&gltf_format, &assimp_format, NULL};
+const import_format *const import_formats[] = {&gltf_format, &obj_format, &assimp_format, NULL};
 
 bool import_has_suffix(const char *file, const char *suffix) {
     const size_t n = strlen(file), k = strlen(suffix);

@@ -10,7 +10,7 @@
 
 typedef struct corner_at {
     float p[3];
-    uint32_t corner;
+    uint32_t group, corner;
 } corner_at;
 
 static int compare(const void *left, const void *right) {
@@ -18,6 +18,8 @@ static int compare(const void *left, const void *right) {
     for (int i = 0; i < 3; i++)
         if (a->p[i] != b->p[i])
             return a->p[i] < b->p[i] ? -1 : 1;
+    if (a->group != b->group)
+        return a->group < b->group ? -1 : 1;
     return a->corner < b->corner ? -1 : a->corner > b->corner;
 }
 
@@ -49,7 +51,7 @@ typedef struct weighted {
     double unit[3], weight;
 } weighted;
 
-/* Normals of `count` corners that lie at one point. */
+/* Normals of `count` corners of one group that lie at one point. */
 static void smooth(const weighted *faces, const corner_at *at, size_t count, float *normal) {
     for (size_t i = 0; i < count; i++) {
         double sum[3] = {0.0, 0.0, 0.0};
@@ -71,7 +73,12 @@ static void smooth(const weighted *faces, const corner_at *at, size_t count, flo
     }
 }
 
-bool import_normals(const float *position, const uint32_t *corner, size_t triangles, float *normal) {
+/* At one point, of one group; a flat face is alone. */
+static bool together(const corner_at *a, const corner_at *b) {
+    return !memcmp(a->p, b->p, sizeof a->p) && a->group == b->group && a->group != IMPORT_FLAT;
+}
+
+bool import_normals(const float *position, const uint32_t *corner, const uint32_t *smoothing, size_t triangles, float *normal) {
     const size_t corners = 3 * triangles;
     corner_at *at = calloc(corners + 1, sizeof *at);
     weighted *faces = calloc(corners + 1, sizeof *faces);
@@ -79,13 +86,14 @@ bool import_normals(const float *position, const uint32_t *corner, size_t triang
         for (size_t x = 0; x < 3; x++)
             at[i].p[x] = position[3 * (size_t)corner[i] + x] + 0.0f; /* -0 and 0 are one place */
         at[i].corner = (uint32_t)i;
+        at[i].group = smoothing ? smoothing[i / 3] : IMPORT_GROUPLESS;
     }
     if (at && faces) {
         qsort(at, corners, sizeof *at, compare);
         for (size_t i = 0; i < corners; i++)
             faces[i].weight = face(position, corner, at[i].corner, faces[i].unit);
         for (size_t first = 0, end; first < corners; first = end) {
-            for (end = first + 1; end < corners && !memcmp(at[end].p, at[first].p, sizeof at->p); end++)
+            for (end = first + 1; end < corners && together(&at[first], &at[end]); end++)
                 ;
             smooth(faces + first, at + first, end - first, normal);
         }

@@ -229,16 +229,21 @@ static bool make_normals(importer *im, instance *in) {
     const mesh_part *part = in->part;
     float *position = calloc(part->vertices, 3 * sizeof *position);
     uint32_t *corner = calloc(in->triangles, 3 * sizeof *corner), *to = corner;
+    uint32_t *smoothing = part->smoothing ? calloc(in->triangles, sizeof *smoothing) : NULL;
+    size_t kept = 0;
     in->smooth = calloc(in->triangles, 9 * sizeof *in->smooth);
-    bool fine = position && corner && in->smooth;
+    bool fine = position && corner && in->smooth && (smoothing || !part->smoothing);
     for (uint32_t v = 0; fine && v < part->vertices; v++)
         place_vertex(in, v, position + 3 * (size_t)v);
     for (size_t t = 0; fine && t < part->triangles; t++)
         if (is_kept(in, t)) {
             corners_of(in, t, to);
             to += 3;
+            if (smoothing)
+                smoothing[kept++] = part->smoothing[t];
         }
-    fine = fine && import_normals(position, corner, in->triangles, in->smooth);
+    fine = fine && import_normals(position, corner, smoothing, in->triangles, in->smooth);
+    free(smoothing);
     free(position);
     free(corner);
     return fine ? true : import_fail(im, "out of memory");

@@ -56,10 +56,24 @@ static void see_from_front(const mesh_floats *position, const uint32_t *corner, 
     }
 }
 
+/* From its reflex corner, if it has one, else from its first. */
+static void cut_quad(const outline *o, uint32_t triangle[6]) {
+    static const unsigned fan[6] = {0, 1, 2, 0, 2, 3};
+    unsigned start = 0;
+    while (start < 4 && !(turn(o, o->before[start], start, o->after[start]) < 0.0))
+        start++;
+    for (unsigned i = 0; i < 6; i++)
+        triangle[i] = (start + fan[i]) % 4;
+}
+
 /* An outline that crosses itself, or has no area, is cut somehow. */
 void import_cut_polygon(const mesh_floats *position, const uint32_t *corner, unsigned count, uint32_t *triangle) {
     outline o;
     see_from_front(position, corner, count, &o);
+    if (count == 4) {
+        cut_quad(&o, triangle);
+        return;
+    }
     unsigned at = 1;
     for (unsigned left = count; left >= 3; left--) {
         unsigned ear = at, tried = 0;

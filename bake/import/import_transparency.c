@@ -39,6 +39,21 @@ static bool take_stock(importer *im, const uint64_t *of_material, unsigned mater
     return fine;
 }
 
+bool import_is_inverse(importer *im, const uint64_t *of_material, const float *stated, unsigned materials) {
+    bool invisible = false;
+    for (unsigned i = 0; i < materials; i++) {
+        if (of_material[i] == 0 || stated[i] == IMPORT_SAYS_SO)
+            continue;
+        if (stated[i] == 1.0f)
+            return false;
+        invisible = invisible || stated[i] == 0.0f;
+    }
+    if (invisible)
+        import_warn(im, "no material is opaque by the letter and some are invisible: transparency is taken the other way round "
+                        "('cutoff' of a material in a scene file makes it a hole)");
+    return invisible;
+}
+
 /* A COLLADA material of <transparency> 0 is an exporter's opaque one (Autodesk's, Blender 2.4's), whatever others there are:
  * who wants an invisible one leaves it out. */
 static bool means_opaque_by_0(const importer *im) {

@@ -90,6 +90,7 @@ typedef struct mesh_part {
     mesh_floats uv[IMPORT_UV_SETS]; /* 2 */
     bool v_up;                      /* v = 0 is the images' last row */
     const uint32_t *corner;         /* 3 a triangle; those out of range are counted and dropped */
+    const uint32_t *smoothing;      /* one a triangle, or NULL: groups by which normals are made */
     size_t triangles;
     unsigned material; /* of the file */
 } mesh_part;
@@ -148,9 +149,13 @@ bool import_make_room(importer *im, size_t vertices, size_t triangles);
 /* out = a b, of which the last rows are 0 0 0 1. */
 void import_multiply(const double a[12], const double b[12], double out[12]);
 
-/* import_normals.c: a unit normal for each of the 3 * triangles corners, in `normal` (9 floats a triangle).
- * position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of memory. */
-bool import_normals(const float *position, const uint32_t *corner, size_t triangles, float *normal);
+/* import_normals.c: a unit normal for each of the 3 * triangles corners, in `normal` (9 floats a triangle): smooth up to an
+ * edge of 60 degrees, among triangles of one smoothing group; those of IMPORT_FLAT are flat. All are IMPORT_GROUPLESS if
+ * `smoothing` is NULL. position: 3 floats a vertex; corner: 3 vertex indices a triangle, no triangle degenerate. False: out of
+ * memory. */
+#define IMPORT_FLAT 0u
+#define IMPORT_GROUPLESS UINT32_MAX
+bool import_normals(const float *position, const uint32_t *corner, const uint32_t *smoothing, size_t triangles, float *normal);
 
 /* import_polygon.c: cuts a polygon of `count` corners, 3..IMPORT_CORNERS, which are vertices of `position`, into count - 2
  * triangles: three of 0..count - 1 each. */
@@ -195,6 +200,12 @@ bool import_without(importer *im, const char *material, const char *name, const 
 bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image);
 
 /* ---- import_transparency.c ---- */
+
+/* Whether the file writes transparency where it means opacity, or the other way round, with a warning if so: no material in
+ * use is opaque by the letter, and some are invisible. stated: opacities by the letter, 0..1; IMPORT_SAYS_SO for materials
+ * that say otherwise what they are. */
+#define IMPORT_SAYS_SO (-1.0f)
+bool import_is_inverse(importer *im, const uint64_t *of_material, const float *stated, unsigned materials);
 
 /* Decides, before triangles are placed, whether the file's transparent materials are shown after all, and warns. of_material:
  * triangles of each of the file's materials, in all places. */

@@ -207,7 +207,10 @@ static void content_goes_before_the_suffix(void **state) {
     assert_string_equal(reader_of("a.obj", "{\"asset\":"), "glTF 2.0");
     assert_string_equal(reader_of("a.GLTF", "nonsense"), "glTF 2.0");
     assert_string_equal(reader_of("a.json", "{\"metadata\":"), "Assimp");
-    assert_string_equal(reader_of("a.obj", "v 0 0 0\n"), "Assimp");
+    assert_string_equal(reader_of("a.obj", "nonsense"), "OBJ");
+    assert_string_equal(reader_of("a", "\xef\xbb\xbf# by hand\r\n\r\nv -.5 0 1\n"), "OBJ");
+    assert_string_equal(reader_of("a", "# by hand\nmtllib a.mtl\n"), "OBJ");
+    assert_string_equal(reader_of("a.nff", "v\nfrom 0 0 1\n"), "Assimp");
     assert_string_equal(reader_of("gltf", ""), "Assimp");
     const uint8_t two[8] = {'g', 'l', 'T', 'F', 2}, one[8] = {'g', 'l', 'T', 'F', 1};
     assert_string_equal(import_format_of("a", two, sizeof two)->name, "glTF 2.0");

@@ -124,7 +124,7 @@ static void what_is_not_done_is_told(void **state) {
     free(text);
     text = list_of(FILE_OF("b.cfg"), false);
     holds(text, "\nnot done 3\n"); /* the texture, and of the extensions one that is required and one that is used */
-    holds(text, "b.obj' is read as Assimp, without animations");
+    holds(text, "b.obj' is read as OBJ, without curves");
     holds(text, "odd.gltf' is read as glTF 2.0, without animations");
     free(text);
 }

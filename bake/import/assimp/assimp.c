@@ -53,10 +53,6 @@ static bool fail_by_assimp(importer *im) {
     return import_fail(im, "%.250s", text && *text ? text : "cannot be understood");
 }
 
-static bool has_materials(assimp_scene *a) {
-    return !a->no_materials[0] || import_not_done(a->im, "its material file '%.100s' is not there", a->no_materials);
-}
-
 static bool add_scene(assimp_scene *a, const scene_mesh *mesh) {
     a->im->embedded = a->ai->mNumTextures;
     if (!a->ai->mRootNode)
@@ -71,7 +67,7 @@ static bool read_scene(assimp_scene *a, const scene_mesh *mesh) {
     a->ai = aiImportFileEx(a->im->file, 0, &io);
     if (!a->ai)
         return fail_by_assimp(a->im);
-    const bool fine = has_materials(a) && assimp_mend_tree(a) && assimp_triangulate(a) && add_scene(a, mesh);
+    const bool fine = assimp_mend_tree(a) && assimp_triangulate(a) && add_scene(a, mesh);
     assimp_free_cuts(a);
     if (a->ai && !a->im->to_parent) /* the child is thrown away whole: some readers' trees do not survive being freed */
         aiReleaseImport(a->ai);

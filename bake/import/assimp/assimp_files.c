@@ -50,28 +50,11 @@ static FILE *open_plain(const char *path, size_t *size) {
     return file;
 }
 
-static const char *last_part(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/* Assimp goes on without a material file, without a word: the first that is nowhere is remembered. It may be tried for in more
- * places. */
-static void note_materials(assimp_scene *a, const char *path, bool there) {
-    if (!import_has_suffix(path, ".mtl"))
-        return;
-    if (there && strcmp(a->no_materials, last_part(path)) == 0)
-        a->no_materials[0] = '\0';
-    else if (!there && !a->no_materials[0])
-        (void)snprintf(a->no_materials, sizeof a->no_materials, "%s", last_part(path));
-}
-
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
     assimp_scene *a = (assimp_scene *)(void *)io->UserData;
     size_t bytes;
     FILE *file = strpbrk(mode, "wa+") ? NULL : open_plain(path, &bytes);
     struct aiFile *f = file ? malloc(sizeof *f) : NULL;
-    note_materials(a, path, file != NULL);
     if (!f) {
         if (file)
             (void)fclose(file);

@@ -41,7 +41,6 @@ static void read_texture(material_use *use, const struct aiMaterial *ai) {
     }
 }
 
-/* Diffuse reflectance, before assimp_shine() has told what of it is not diffuse. */
 static void read_color(importer *im, material_use *use, const struct aiMaterial *ai) {
     float color[4] = {0.8f, 0.8f, 0.8f, 1.0f};
     if (!assimp_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
@@ -68,7 +67,7 @@ static void read_emission(importer *im, material_use *use, const struct aiMateri
     import_emission(im, &use->m, color, strength);
 }
 
-/* d is one number for all of it, map_d an image that has to be the colour texture's own alpha. */
+/* A number for all of it; an image has to be the colour texture's own alpha. */
 static void read_alpha(importer *im, material_use *use, const struct aiMaterial *ai) {
     struct aiString path;
     const float alpha = assimp_opacity(im->reader, ai);
@@ -95,5 +94,5 @@ bool assimp_material(importer *im, material_use *use) {
     read_color(im, use, ai);
     read_emission(im, use, ai);
     read_alpha(im, use, ai);
-    return assimp_shine(im, use, ai);
+    return true;
 }

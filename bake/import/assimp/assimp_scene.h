@@ -17,8 +17,7 @@ typedef struct polygon_cut {
 typedef struct assimp_scene {
     importer *im;
     const struct aiScene *ai;
-    bool inverse;                  /* the file's opacities are transparencies (assimp_transparency.c) */
-    char no_materials[SCENE_NAME]; /* material file that is not there; "" if all are */
+    bool inverse; /* the file's opacities are transparencies (assimp_transparency.c) */
     bool warned_morph, warned_bones;
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
@@ -51,12 +50,6 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]);
 bool assimp_material(importer *im, material_use *use);
 /* `count` floats, if there are as many; keys are macros of three arguments, key, type, index. */
 bool assimp_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count);
-
-/* assimp_mtl.c: kind, lobe, glass and what they leave of the albedo, once colour, emission and alpha are known. False: a
- * texture that is needed (strict), or out of memory. */
-bool assimp_shine(importer *im, material_use *use, const struct aiMaterial *ai);
-/* MTL's `illum` says that light goes through. */
-bool assimp_is_glass(const struct aiMaterial *ai);
 
 /* assimp_transparency.c: decides, before materials are read, how the file means transparency, and warns. */
 bool assimp_transparency(assimp_scene *a);

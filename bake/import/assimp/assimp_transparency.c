@@ -15,7 +15,7 @@ float assimp_stated_opacity(const struct aiMaterial *ai) {
 
 float assimp_opacity(const assimp_scene *a, const struct aiMaterial *ai) {
     const float alpha = assimp_stated_opacity(ai);
-    return a->inverse && !assimp_is_glass(ai) ? 1.0f - alpha : alpha;
+    return a->inverse ? 1.0f - alpha : alpha;
 }
 
 static void count_triangles(const struct aiScene *all, const struct aiNode *node, uint64_t *of_material, int depth) {
@@ -32,38 +32,21 @@ static void count_triangles(const struct aiScene *all, const struct aiNode *node
         count_triangles(all, node->mChildren[i], of_material, depth + 1);
 }
 
-/* No material in use is opaque by the letter, and some are invisible: the file writes transparency where it means opacity, or
- * the other way round. MTL's glass says by `illum` what it is. */
-static bool is_inverse(const assimp_scene *a, const uint64_t *of_material) {
-    bool invisible = false;
-    for (unsigned i = 0; i < a->ai->mNumMaterials; i++) {
-        const struct aiMaterial *ai = a->ai->mMaterials[i];
-        const float alpha = assimp_stated_opacity(ai);
-        if (of_material[i] == 0 || assimp_is_glass(ai))
-            continue;
-        if (alpha == 1.0f)
-            return false;
-        invisible = invisible || alpha == 0.0f;
-    }
-    return invisible;
-}
-
 bool assimp_transparency(assimp_scene *a) {
-    bool any = false;
-    for (unsigned i = 0; i < a->ai->mNumMaterials; i++)
-        any = any || assimp_stated_opacity(a->ai->mMaterials[i]) < 1.0f;
-    if (!any)
-        return true;
-    uint64_t *of_material = calloc(a->ai->mNumMaterials, sizeof *of_material);
-    if (!of_material)
-        return import_fail(a->im, "out of memory");
-    count_triangles(a->ai, a->ai->mRootNode, of_material, 0);
-    a->inverse = is_inverse(a, of_material);
-    if (a->inverse)
-        import_warn(a->im,
-                    "no material is opaque by the letter and some are invisible: transparency is taken the other way round "
-                    "('cutoff' of a material in a scene file makes it a hole)");
-    const bool fine = import_transparency(a->im, of_material, a->ai->mNumMaterials);
+    const unsigned materials = a->ai->mNumMaterials;
+    float *stated = calloc((size_t)materials + 1, sizeof *stated);
+    uint64_t *of_material = calloc((size_t)materials + 1, sizeof *of_material);
+    bool any = false, fine = stated && of_material;
+    for (unsigned i = 0; fine && i < materials; i++) {
+        stated[i] = assimp_stated_opacity(a->ai->mMaterials[i]);
+        any = any || stated[i] < 1.0f;
+    }
+    if (fine && any) {
+        count_triangles(a->ai, a->ai->mRootNode, of_material, 0);
+        a->inverse = import_is_inverse(a->im, of_material, stated, materials);
+    }
+    fine = fine ? !any || import_transparency(a->im, of_material, materials) : import_fail(a->im, "out of memory");
+    free(stated);
     free(of_material);
     return fine;
 }
