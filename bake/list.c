@@ -1,6 +1,7 @@
 #include "list.h"
 #include "common/fail.h"
 #include "import/import_format.h"
+#include "import/import_frame.h"
 #include "list_parts.h"
 #include "vitrine_pack.h"
 #include <inttypes.h>
@@ -101,13 +102,14 @@ static void print_cameras(const model *m, FILE *to) {
 static void print_formats(const list *l, FILE *to) {
     (void)fprintf(to, "\nformats %d\n", l->model.format_count);
     for (int i = 0; i < l->model.format_count; i++) {
-        const import_format *f = import_formats[l->model.formats[i]];
+        const import_format *f = import_formats[l->model.formats[i].reader];
+        char frame[FRAME_TEXT];
         (void)fputs("  ", to);
         print_name(to, l->s->meshes[i].file);
         (void)fprintf(to, " is read as %s, without", f->name);
         for (size_t k = 0; f->cannot[k]; k++)
             (void)fprintf(to, "%s %s", k ? "," : "", f->cannot[k]);
-        (void)fputc('\n', to);
+        (void)fprintf(to, "; %s\n", frame_text(&l->model.formats[i].frame, frame));
     }
 }
 

@@ -134,10 +134,20 @@ static void textures(const model *m, FILE *to) {
     (void)fputs("]", to);
 }
 
+/* Metres a unit, the axis that is up, and who says so. */
+static void frame(const model_frame *f, FILE *to) {
+    static const char by[] = "default|format|file|scene"; /* frame_source */
+    char word[LIST_WORD];
+    key(to, "unit");
+    text_number(to, f->unit, "null");
+    (void)fprintf(to, ", \"unit_by\": \"%s\"", list_word(by, f->unit_by, word));
+    (void)fprintf(to, ", \"up\": \"%c\", \"up_by\": \"%s\"", "xyz"[f->up], list_word(by, f->up_by, word));
+}
+
 static void formats(const list *l, FILE *to) {
     open_list(to, "formats");
     for (int i = 0; i < l->model.format_count; i++) {
-        const import_format *f = import_formats[l->model.formats[i]];
+        const import_format *f = import_formats[l->model.formats[i].reader];
         next(to, (size_t)i);
         text(to, "file", l->s->meshes[i].file);
         (void)fputs(", ", to);
@@ -147,7 +157,9 @@ static void formats(const list *l, FILE *to) {
             (void)fputs(k ? ", " : "", to);
             text_json(to, f->cannot[k]);
         }
-        (void)fputs("]}", to);
+        (void)fputs("], ", to);
+        frame(&l->model.formats[i].frame, to);
+        (void)fputc('}', to);
     }
     (void)fputs("]", to);
 }

@@ -158,19 +158,38 @@ static bool choose_format(importer *im) {
 static bool note_format(importer *im) {
     model *m = im->m;
     size_t room = (size_t)m->format_count;
-    uint8_t format = 0;
-    while (import_formats[format] != im->format)
-        format++;
+    model_format format = {.reader = 0, .frame = im->frame};
+    while (import_formats[format.reader] != im->format)
+        format.reader++;
     if (!import_room(im, &m->formats, &room, room + 1, sizeof *m->formats))
         return false;
     m->formats[m->format_count++] = format;
     return true;
 }
 
+/* The mesh for a reader that knows nothing of units and up axes: they are in its place. */
+static scene_mesh stand(importer *im, const scene_mesh *mesh) {
+    const uint32_t by = im->format->states_frame ? FRAME_BY_FORMAT : FRAME_BY_NOBODY;
+    const model_frame stated = {1.0, FRAME_Y, by, by};
+    scene_mesh placed = *mesh;
+    double own[12];
+    import_frame(im, mesh, &stated);
+    import_frame_matrix(&im->frame, own);
+    if (!im->format->finds_frame)
+        import_multiply(mesh->transform, own, placed.transform);
+    return placed;
+}
+
+static bool read_by_format(importer *im, const scene_mesh *mesh) {
+    if (!choose_format(im))
+        return false;
+    const scene_mesh placed = stand(im, mesh);
+    return im->format->read(im, &placed);
+}
+
 bool import_file(importer *im, const scene_mesh *mesh) {
     const uint32_t before = im->m->triangles;
-    const bool fine =
-        choose_format(im) && im->format->read(im, mesh) && list_meshes(im) && note_format(im) && settle_file(im, before);
+    const bool fine = read_by_format(im, mesh) && list_meshes(im) && note_format(im) && settle_file(im, before);
     free(im->placed);
     im->placed = NULL;
     im->placed_count = 0;

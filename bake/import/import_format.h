@@ -17,6 +17,11 @@ typedef struct import_format {
     const char *name;            /* for users: "glTF 2.0" */
     const char *const *suffixes; /* ".gltf"; NULL at the end */
     const char *const *cannot;   /* what it never does, in words for --list; NULL at the end */
+    /* Metres, y up, by the format itself. */
+    bool states_frame;
+    /* It settles unit and up axis by import_frame() and puts import_stand()'s place in front of all that it places. Else the
+     * place that read() is given has them. */
+    bool finds_frame;
     /* The file is of this format by its first bytes. */
     bool (*is_it)(const uint8_t *head, size_t size);
     /* Reads im->file: checks what the file needs, places its triangles (import_place.c), adds its lights and cameras

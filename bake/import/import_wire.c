@@ -83,7 +83,7 @@ void wire_send_model(const importer *im, int images, wire *to) {
     put(to, m->lights, (size_t)m->light_count * sizeof *m->lights);
     put(to, m->meshes, (size_t)m->mesh_count * sizeof *m->meshes);
     put(to, m->extensions, (size_t)m->extension_count * sizeof *m->extensions);
-    put(to, m->formats, (size_t)m->format_count);
+    put(to, m->formats, (size_t)m->format_count * sizeof *m->formats);
     put(to, im->override_used, (size_t)im->s->material_count);
     for (int i = images; i < m->image_count; i++)
         send_image(&m->images[i], to);
@@ -178,6 +178,14 @@ static bool good_light(model_light *l) {
            isfinite(l->inner) && isfinite(l->outer) && isfinite(l->range) && is_bool(&l->states_unit);
 }
 
+static bool good_format(const model_format *f) {
+    uint32_t count = 0;
+    while (import_formats[count])
+        count++;
+    return f->reader < count && f->frame.unit > 0.0 && isfinite(f->frame.unit) && f->frame.up <= FRAME_Z &&
+           f->frame.unit_by <= FRAME_BY_SCENE && f->frame.up_by <= FRAME_BY_SCENE;
+}
+
 /* Counts that can be together. */
 static bool good_head(const importer *im, const model_head *h) {
     return h->triangles <= VIT_MAX_TRIANGLES && h->vertices <= 3 * h->triangles && h->materials <= h->triangles &&
@@ -252,10 +260,8 @@ static bool receive_extensions(importer *im, const model_head *h, wire *from) {
         e->name[sizeof e->name - 1] = '\0';
         e->file = im->file_index;
     }
-    uint8_t format, count = 0;
-    while (import_formats[count])
-        count++;
-    if (!get(from, &format, sizeof format) || format >= count)
+    model_format format;
+    if (!get(from, &format, sizeof format) || !good_format(&format))
         return false;
     m->formats[m->format_count++] = format;
     return true;

@@ -28,6 +28,7 @@ typedef struct importer {
     const char *file; /* path as the scene gives it; every message starts with it */
     const import_format *format;
     void *reader;              /* what the format's reader keeps of the file */
+    model_frame frame;         /* the file's unit and up axis, as they are taken */
     unsigned embedded;         /* images in the file itself */
     bool states_units;         /* the format says candela, lux and nits */
     struct material_use *uses; /* materials of this file that a triangle uses */
@@ -135,6 +136,13 @@ typedef struct import_bytes {
 /* The whole of a plain file that is not empty, noted as an input. */
 bool import_map(importer *im, const char *path, import_bytes *out);
 void import_drop_bytes(import_bytes *bytes);
+
+/* ---- import_frame.c ---- */
+
+/* Settles im->frame: what the scene file says, else `stated`. */
+void import_frame(importer *im, const scene_mesh *mesh, const model_frame *stated);
+/* 3 x 4, from the file's numbers to metres, y up. */
+void import_frame_matrix(const model_frame *frame, double out[12]);
 
 /* ---- import_place.c ---- */
 

@@ -62,6 +62,21 @@ typedef struct model_extension {
 
 enum { MODEL_EXTENSIONS = 256 }; /* of a file */
 
+/* Who says in what unit a mesh file's numbers are and which axis is up. */
+typedef enum frame_source { FRAME_BY_NOBODY, FRAME_BY_FORMAT, FRAME_BY_FILE, FRAME_BY_SCENE } frame_source;
+enum { FRAME_X, FRAME_Y, FRAME_Z };
+typedef struct model_frame {
+    double unit;             /* metres that 1 of the file is */
+    uint32_t up;             /* FRAME_*: axis of the file that is up */
+    uint32_t unit_by, up_by; /* frame_source; FRAME_BY_NOBODY: 1 m, and y */
+} model_frame;
+
+/* How a mesh file is read. */
+typedef struct model_format {
+    uint32_t reader; /* index in import_formats */
+    model_frame frame;
+} model_format;
+
 /* What is counted over all files, and travels from the child that reads one: X(name, meaning). */
 #define MODEL_COUNTS(X)                                                                                                        \
     X(degenerate, "triangles dropped for zero area")                                                                           \
@@ -90,7 +105,7 @@ typedef struct model {
     int mesh_count;
     model_extension *extensions;
     int extension_count;
-    uint8_t *formats; /* a mesh file each: which of import_formats reads it */
+    model_format *formats; /* a mesh file each */
     int format_count;
     double lo[3], hi[3]; /* box of the vertices in use */
     double step;         /* m between neighbouring floats where the files' vertices are farthest from their origin */

@@ -2,6 +2,7 @@
 #include "geometry/area_light_plane.h"
 #include "geometry/glass_inset.h"
 #include "geometry/recentre.h"
+#include "import/import_frame.h"
 #include "import/light_units.h"
 #include "pack/stages.h"
 #include <math.h>
@@ -41,6 +42,7 @@ vit_status stage_import(pipeline *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     say_highlights(&p->model, p->progress);
+    frames_say(&p->scene, &p->model, p->progress);
     double size = 0.0;
     for (int k = 0; k < 3; k++)
         size = fmax(size, p->model.hi[k] - p->model.lo[k]);

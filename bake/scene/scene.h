@@ -11,8 +11,13 @@
 typedef struct scene_mesh {
     char file[SCENE_PATH]; /* resolved against the scene file's folder */
     double transform[12];  /* 3 x 4, row-major: translate * rotate (x, then y, then z; degrees) * scale */
+    double unit;           /* metres that 1 of the file is; 0: as the file says */
+    int up;                /* SCENE_UP_*: which axis of the file is up */
     int line;              /* in the scene file, for errors */
 } scene_mesh;
+
+enum { SCENE_UP_AUTO, SCENE_UP_X, SCENE_UP_Y, SCENE_UP_Z };
+#define SCENE_UPS "auto|x|y|z" /* in this order; auto: as the file says */
 
 /* A camera or light keyframe; fields that the file leaves out repeat the key before. */
 typedef struct scene_camera_key {

@@ -9,7 +9,8 @@ enum { MAX_MESHES = 4096, MAX_MATERIALS = 4096 };
 
 typedef struct mesh_placement {
     char file[SCENE_PATH];
-    double scale[3], rotate[3], translate[3];
+    double scale[3], rotate[3], translate[3], unit;
+    int up;
 } mesh_placement;
 
 enum { MESH_FILE };
@@ -18,6 +19,8 @@ static const config_field mesh_fields[] = {
     {"scale", FIELD_SCALE, offsetof(mesh_placement, scale), COORDINATE},
     {"rotate", FIELD_VECTOR, offsetof(mesh_placement, rotate), COORDINATE},
     {"translate", FIELD_VECTOR, offsetof(mesh_placement, translate), COORDINATE},
+    {"units", FIELD_AUTO, offsetof(mesh_placement, unit), "[1e-6, 1e6]"},
+    {"up", FIELD_WORD, offsetof(mesh_placement, up), SCENE_UPS},
 };
 
 /* Right angles are exact: a box turned by 90 degrees keeps its vertices on the axes. */
@@ -84,6 +87,8 @@ bool reader_meshes(reader *r, const config_setting_t *root) {
         scene_mesh *mesh = &r->s->meshes[r->s->mesh_count++];
         memcpy(mesh->file, p.file, sizeof mesh->file);
         place_mesh(&p, mesh->transform);
+        mesh->unit = p.unit;
+        mesh->up = p.up;
         mesh->line = (int)config_setting_source_line(group);
     }
     return true;

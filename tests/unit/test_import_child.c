@@ -197,7 +197,13 @@ static void switch_is_neither(importer *im) {
     memset(&im->m->materials[0].area_light, 0x55, 1);
 }
 static void reader_is_none(importer *im) {
-    im->m->formats[0] = 99;
+    im->m->formats[0].reader = 99;
+}
+static void unit_is_none(importer *im) {
+    im->m->formats[0].frame.unit = 0.0;
+}
+static void axis_is_none(importer *im) {
+    im->m->formats[0].frame.up = 3;
 }
 static void two_readers(importer *im) {
     im->m->format_count = 2;
@@ -225,6 +231,8 @@ static void lies_about_the_model_are_seen(void **state) {
                                                wrap_is_none,
                                                switch_is_neither,
                                                reader_is_none,
+                                               unit_is_none,
+                                               axis_is_none,
                                                two_readers,
                                                more_extensions_than_there_are,
                                                more_materials_than_triangles,

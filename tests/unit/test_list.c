@@ -114,18 +114,22 @@ static void what_is_not_done_is_told(void **state) {
     (void)state;
     put(FILE_OF("b.mtl"), "newmtl m\nKd 1 1 1\nmap_Kd nowhere.png\n");
     put(FILE_OF("b.obj"), "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
-    put(FILE_OF("b.cfg"), "meshes = ( { file = \"b.obj\"; }, { file = \"odd.gltf\"; } );\ncamera: { use = \"Eye\"; };\n");
+    put(FILE_OF("b.cfg"), "meshes = ( { file = \"b.obj\"; units = 0.01; up = \"z\"; }, { file = \"odd.gltf\"; } );\n"
+                          "camera: { use = \"Eye\"; };\n");
     put_odd();
     char *text = list_of(FILE_OF("b.cfg"), true);
     assert_true(json_valid(text));
     holds(text, "\"not_done\": [\n    ");
     holds(text, "nowhere.png");
+    holds(text, "\"unit\": 0.01, \"unit_by\": \"scene\", \"up\": \"z\", \"up_by\": \"scene\"}");
+    holds(text, "\"unit\": 1, \"unit_by\": \"format\", \"up\": \"y\", \"up_by\": \"format\"}");
     holds(text, "\"file\": \"" FOLDER "/odd.gltf\", \"triangles\": 1");
     free(text);
     text = list_of(FILE_OF("b.cfg"), false);
     holds(text, "\nnot done 3\n"); /* the texture, and of the extensions one that is required and one that is used */
     holds(text, "b.obj' is read as OBJ, without curves");
     holds(text, "odd.gltf' is read as glTF 2.0, without animations");
+    holds(text, "; 1 unit is 0.01 m and z is up: the scene file says so\n");
     free(text);
 }
 

@@ -30,10 +30,10 @@ static bool add_node(assimp_scene *a, const struct aiNode *node, const double pa
 }
 
 /* Meshes whose nodes Assimp has lost stand where the root does: in RAW files that is where they belong. */
-static bool add_strays(assimp_scene *a, const scene_mesh *mesh) {
+static bool add_strays(assimp_scene *a, const double place[12]) {
     unsigned strays = 0;
     double world[12];
-    place_of(mesh->transform, &a->ai->mRootNode->mTransformation, world);
+    place_of(place, &a->ai->mRootNode->mTransformation, world);
     for (unsigned i = 0; i < a->ai->mNumMeshes; i++)
         if (assimp_is_stray(a, i)) {
             strays++;
@@ -54,11 +54,12 @@ static bool fail_by_assimp(importer *im) {
 }
 
 static bool add_scene(assimp_scene *a, const scene_mesh *mesh) {
+    double place[12];
     a->im->embedded = a->ai->mNumTextures;
     if (!a->ai->mRootNode)
         return import_fail(a->im, "has no nodes");
-    return import_begin_meshes(a->im, a->ai->mNumMeshes) && assimp_transparency(a) &&
-           add_node(a, a->ai->mRootNode, mesh->transform, 0) && add_strays(a, mesh);
+    return assimp_frame(a, mesh, place) && import_begin_meshes(a->im, a->ai->mNumMeshes) && assimp_transparency(a) &&
+           add_node(a, a->ai->mRootNode, place, 0) && add_strays(a, place);
 }
 
 static bool read_scene(assimp_scene *a, const scene_mesh *mesh) {
@@ -120,6 +121,7 @@ static const char *const cannot[] = {"animations", "morph targets and skins", "v
 const import_format assimp_format = {.name = "Assimp",
                                      .suffixes = suffixes,
                                      .cannot = cannot,
+                                     .finds_frame = true,
                                      .is_it = is_any,
                                      .read = read,
                                      .material = assimp_material,

@@ -8,8 +8,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* One that is open; Assimp's UserData. */
+typedef struct plain_file {
+    FILE *file;
+    char *text; /* its bytes as they are handed on, if they are not as they stand in it */
+} plain_file;
+
+static FILE *of(const struct aiFile *f) {
+    return ((const plain_file *)(const void *)f->UserData)->file;
+}
+
 static size_t read_some(struct aiFile *f, char *to, size_t size, size_t count) {
-    return size ? fread(to, size, count, (FILE *)(void *)f->UserData) : 0;
+    return size ? fread(to, size, count, of(f)) : 0;
 }
 
 static size_t write_nothing(struct aiFile *f, const char *from, size_t size, size_t count) {
@@ -21,18 +31,19 @@ static size_t write_nothing(struct aiFile *f, const char *from, size_t size, siz
 }
 
 static size_t tell(struct aiFile *f) {
-    const long at = ftell((FILE *)(void *)f->UserData);
+    const long at = ftell(of(f));
     return at < 0 ? 0 : (size_t)at;
 }
 
 static size_t size_of(struct aiFile *f) {
-    struct stat s;
-    return fstat(fileno((FILE *)(void *)f->UserData), &s) == 0 && s.st_size > 0 ? (size_t)s.st_size : 0;
+    const long at = ftell(of(f));
+    const long end = at >= 0 && fseek(of(f), 0, SEEK_END) == 0 ? ftell(of(f)) : -1;
+    return at >= 0 && fseek(of(f), at, SEEK_SET) == 0 && end > 0 ? (size_t)end : 0;
 }
 
 static enum aiReturn seek(struct aiFile *f, size_t offset, enum aiOrigin origin) {
     const int from = origin == aiOrigin_SET ? SEEK_SET : origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END;
-    return fseek((FILE *)(void *)f->UserData, (long)offset, from) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
+    return fseek(of(f), (long)offset, from) == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
 }
 
 static void flush_nothing(struct aiFile *f) {
@@ -50,31 +61,68 @@ static FILE *open_plain(const char *path, size_t *size) {
     return file;
 }
 
+/* Without the space between a tag and what follows: XML's lists of numbers may begin with it (white space is collapsed: XML
+ * Schema, 2), but Assimp 5.2 refuses it there, and Godot's exporter writes it. */
+static size_t drop_space(char *text, size_t size) {
+    size_t kept = 0;
+    bool after_tag = false;
+    for (size_t i = 0; i < size; i++) {
+        const char c = text[i];
+        if (after_tag && (c == ' ' || c == '\t' || c == '\r' || c == '\n'))
+            continue;
+        after_tag = c == '>';
+        text[kept++] = c;
+    }
+    return kept;
+}
+
+/* COLLADA's text in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
+static void mend_collada(plain_file *f, size_t bytes) {
+    char *text = malloc(bytes + 1);
+    const size_t size = text && fread(text, 1, bytes, f->file) == bytes ? drop_space(text, bytes) : 0;
+    FILE *mended = size > 0 ? fmemopen(text, size, "rb") : NULL;
+    if (!mended) {
+        free(text);
+        rewind(f->file);
+        return;
+    }
+    (void)fclose(f->file);
+    *f = (plain_file){mended, text};
+}
+
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
     assimp_scene *a = (assimp_scene *)(void *)io->UserData;
     size_t bytes;
     FILE *file = strpbrk(mode, "wa+") ? NULL : open_plain(path, &bytes);
     struct aiFile *f = file ? malloc(sizeof *f) : NULL;
-    if (!f) {
+    plain_file *plain = f ? calloc(1, sizeof *plain) : NULL;
+    if (!plain) {
         if (file)
             (void)fclose(file);
+        free(f);
         return NULL;
     }
+    plain->file = file;
+    import_note_file(a->im, path, bytes);
+    if (import_has_suffix(path, ".dae"))
+        mend_collada(plain, bytes);
     *f = (struct aiFile){.ReadProc = read_some,
                          .WriteProc = write_nothing,
                          .TellProc = tell,
                          .FileSizeProc = size_of,
                          .SeekProc = seek,
                          .FlushProc = flush_nothing,
-                         .UserData = (char *)(void *)file};
-    import_note_file(a->im, path, bytes);
+                         .UserData = (char *)(void *)plain};
     return f;
 }
 
 static void close_file(struct aiFileIO *io, struct aiFile *f) {
     (void)io;
     if (f) {
-        (void)fclose((FILE *)(void *)f->UserData);
+        plain_file *plain = (plain_file *)(void *)f->UserData;
+        (void)fclose(plain->file);
+        free(plain->text);
+        free(plain);
         free(f);
     }
 }

@@ -4,6 +4,7 @@
 #include "common/strict_math.h"
 #include <assimp/camera.h>
 #include <assimp/light.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -40,9 +41,11 @@ bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double wor
         import_transform_vector(world, look, forward);
         import_transform_vector(world, up, camera.up);
         take_names(node, camera.name, camera.parent);
-        if (c->mOrthographicWidth > 0.0f)
-            import_warn(a->im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
-                        c->mName.data);
+        if (c->mOrthographicWidth > 0.0f &&
+            !import_not_done(a->im,
+                             "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
+                             c->mName.data))
+            return false;
         if (!import_add_camera(a->im, &camera, forward))
             return false;
     }
@@ -52,7 +55,7 @@ bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double wor
 /* Degrees from the axis. What half the cone's angle is of the number that Assimp gives: it hands on what the file says, and
  * formats differ. In these angles are from the axis; FBX, COLLADA (as its exporters write it), 3DS, ASE and Blender say the
  * whole cone's. */
-static void read_cone(const importer *im, const struct aiLight *l, model_light *out) {
+static bool read_cone(importer *im, const struct aiLight *l, model_light *out) {
     static const char *const from_axis[] = {".x3d", ".x3dv", ".wrl", ".lws"};
     double part = 0.5 * 180.0 / PI;
     for (size_t i = 0; i < sizeof from_axis / sizeof from_axis[0]; i++)
@@ -60,19 +63,29 @@ static void read_cone(const importer *im, const struct aiLight *l, model_light *
             part = 180.0 / PI;
     out->inner = (double)l->mAngleInnerCone * part;
     out->outer = (double)l->mAngleOuterCone * part;
-    /* COLLADA has one angle and an exponent; Assimp makes up an outer angle, often beyond a half turn. */
-    if (import_has_suffix(im->file, ".dae"))
+    /* COLLADA has one angle and an exponent, from which Assimp makes up an outer angle, often beyond a half turn; without an
+     * exponent it is acos(0.1) wider. */
+    const bool collada = import_has_suffix(im->file, ".dae");
+    const bool soft = collada && !(fabs((double)l->mAngleOuterCone - (double)l->mAngleInnerCone - 1.4706289) < 1e-3);
+    if (collada)
         out->outer = out->inner;
+    if (soft && !import_not_done(im, "light '%.100s': its falloff inside the cone is left out: the cone has a hard edge",
+                                 l->mName.data))
+        return false;
+    if (!(out->outer > 90.0))
+        return true;
+    const double whole = 2.0 * out->outer;
+    out->outer = 90.0;
+    out->inner = fmin(out->inner, out->outer);
+    return whole < 180.001 || import_not_done(im, "light '%.100s': a cone of %.6g degrees is cut to 180", l->mName.data, whole);
 }
 
 static bool add_light(importer *im, const struct aiNode *node, const double world[12], const struct aiLight *l) {
     const double color[3] = {(double)l->mColorDiffuse.r, (double)l->mColorDiffuse.g, (double)l->mColorDiffuse.b};
     const bool directional = l->mType == aiLightSource_DIRECTIONAL, spot = l->mType == aiLightSource_SPOT;
     double place[3], along[3];
-    if (!directional && !spot && l->mType != aiLightSource_POINT) {
-        import_warn(im, "light '%.100s' is no point, spot or directional light; it is left out", l->mName.data);
-        return true;
-    }
+    if (!directional && !spot && l->mType != aiLightSource_POINT)
+        return import_not_done(im, "light '%.100s' is no point, spot or directional light; it is left out", l->mName.data);
     model_light out = {.kind = directional ? VIT_LIGHT_DIRECTIONAL
                                : spot      ? VIT_LIGHT_SPOT
                                            : VIT_LIGHT_POINT,
@@ -84,8 +97,8 @@ static bool add_light(importer *im, const struct aiNode *node, const double worl
     import_transform_point(world, place, out.position);
     if (directional || spot)
         import_transform_vector(world, along, out.direction);
-    if (spot)
-        read_cone(im, l, &out);
+    if (spot && !read_cone(im, l, &out))
+        return false;
     return import_add_light(im, &out, 180.001);
 }
 

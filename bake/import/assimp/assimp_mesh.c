@@ -31,13 +31,12 @@ static uint32_t *corners_of(importer *im, const struct aiMesh *mesh, const polyg
 }
 
 /* Once a file. */
-static void say_rigid(assimp_scene *a, const struct aiMesh *mesh) {
-    if (mesh->mNumAnimMeshes > 0 && !a->warned_morph)
-        import_warn(a->im, "morph targets are left out: meshes keep their base shape");
-    if (mesh->mNumBones > 0 && !a->warned_bones)
-        import_warn(a->im, "skins are left out: meshes do not follow their bones");
-    a->warned_morph |= mesh->mNumAnimMeshes > 0;
-    a->warned_bones |= mesh->mNumBones > 0;
+static bool say_rigid(assimp_scene *a, const struct aiMesh *mesh) {
+    const bool morphs = mesh->mNumAnimMeshes > 0 && !a->warned_morph, bones = mesh->mNumBones > 0 && !a->warned_bones;
+    a->warned_morph |= morphs;
+    a->warned_bones |= bones;
+    return (!morphs || import_not_done(a->im, "morph targets are left out: meshes keep their base shape")) &&
+           (!bones || import_not_done(a->im, "skins are left out: meshes do not follow their bones"));
 }
 
 bool assimp_place(assimp_scene *a, unsigned index, const double world[12]) {
@@ -48,12 +47,13 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]) {
     if (mesh->mMaterialIndex >= a->ai->mNumMaterials)
         return import_fail(a->im, "mesh '%.100s' has material %u of %u", mesh->mName.data, mesh->mMaterialIndex,
                            a->ai->mNumMaterials);
-    say_rigid(a, mesh);
+    if (!say_rigid(a, mesh))
+        return false;
     mesh_part part = {.name = mesh->mName.data,
                       .vertices = mesh->mNumVertices,
                       .position = {floats_of(mesh->mVertices), 3},
                       .normal = {floats_of(mesh->mNormals), 3},
-                      .color = {floats_of(mesh->mColors[0]), 4},
+                      .color = {a->plain_colors ? NULL : floats_of(mesh->mColors[0]), 4},
                       .v_up = true, /* Assimp has it so for every format */
                       .material = mesh->mMaterialIndex};
     for (int i = 0; i < IMPORT_UV_SETS && i < AI_MAX_NUMBER_OF_TEXTURECOORDS; i++)

@@ -22,6 +22,7 @@ typedef struct assimp_scene {
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
     unsigned lost_nodes; /* that were NULL in Assimp's tree */
+    bool plain_colors;   /* textures and vertex colours are left out: releases of Assimp read them differently */
 } assimp_scene;
 
 /* assimp_ply.c: refuses a PLY file whose header has no end or lines of no known kind: Assimp's reader never comes back from
@@ -36,6 +37,16 @@ bool assimp_mend_tree(assimp_scene *a);
 /* A mesh that no node leads to, in a tree that had holes: its node was lost. */
 bool assimp_is_stray(const assimp_scene *a, unsigned mesh);
 
+/* assimp_frame.c: settles the file's unit and up axis, and the place in the world of what Assimp's root node stands in. */
+bool assimp_frame(assimp_scene *a, const scene_mesh *mesh, double place[12]);
+/* Assimp's name of the reader that read the file, "Collada Importer"; "" if it has none. */
+const char *assimp_reader(const assimp_scene *a);
+
+/* assimp_archive.c: metres a unit of a 3MF file, or of an AMF file that is no archive; the format's default, 0.001, where it
+ * says none. Warns of what else a 3MF file has and is not done. False: the unit is none, or strict. */
+bool assimp_unit_3mf(importer *im, double *unit, bool *stated);
+bool assimp_unit_amf(importer *im, double *unit, bool *stated);
+
 /* assimp_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted, those
  * of five and more emptied, too, and their triangles kept in a->cuts. */
 bool assimp_triangulate(assimp_scene *a);
@@ -48,6 +59,8 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]);
 
 /* assimp_material.c: as import_format.material has it. */
 bool assimp_material(importer *im, material_use *use);
+/* What import_image() takes for a texture of that path: "*N" if the file holds it. */
+void assimp_image_name(const assimp_scene *a, const struct aiString *path, char out[SCENE_PATH]);
 /* `count` floats, if there are as many; keys are macros of three arguments, key, type, index. */
 bool assimp_floats(const struct aiMaterial *ai, const char *key, unsigned type, unsigned index, float *out, unsigned count);
 

@@ -180,6 +180,7 @@ static const char *const cannot[] = {"animations", "normal maps and emissive tex
 const import_format gltf_format = {.name = "glTF 2.0",
                                    .suffixes = suffixes,
                                    .cannot = cannot,
+                                   .states_frame = true,
                                    .is_it = is_it,
                                    .read = read,
                                    .material = gltf_material,

@@ -1,0 +1,166 @@
+/* Lights, pictures, colours and text of FBX, COLLADA and 3MF, which releases of Assimp read differently or not at all. Each
+ * file is written here (foreign_lab.h), or is of strangers and came out wrong once; right is worked out by hand. */
+#define FOLDER VIT_BUILD_DIR "/tests/unit/import_foreign"
+#include "foreign_lab.h"
+
+#define FBX_LIGHT(type, inner, outer)                                                                                          \
+    "\tNodeAttribute: 300, \"NodeAttribute::lamp\", \"Light\" {\n\t\tTypeFlags: \"Light\"\n\t\tProperties70:  {\n"             \
+    "\t\t\tP: \"LightType\", \"enum\", \"\", \"\"," type "\n\t\t\tP: \"Intensity\", \"Number\", \"\", \"A\",200\n"             \
+    "\t\t\tP: \"InnerAngle\", \"Number\", \"\", \"A\"," inner "\n\t\t\tP: \"OuterAngle\", \"Number\", \"\", \"A\"," outer      \
+    "\n\t\t}\n\t}\n\tModel: 301, \"Model::lamp\", \"Light\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n"                       \
+    "\t\t\tP: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",0,100,300\n\t\t}\n\t}\n"
+#define FBX_LAMP "\tC: \"OO\",301,0\n\tC: \"OO\",300,301\n"
+
+/* Angles of FBX are whole cones', ours from the axis. FBX lights shine along -y, which is into the file's front here. */
+static void spots_of_fbx_have_full_angles_and_stand_where_the_axes_put_them(void **state) {
+    model m;
+    (void)state;
+    put_fbx("0,0,0,1,0,0,0,0,1", z_up, 1, FBX_LIGHT("2", "40", "60"), FBX_LAMP);
+    import_good(FILE_OF("t.fbx"), &m);
+    const model_light *l = model_light_named(&m, "lamp");
+    assert_non_null(l);
+    assert_int_equal(l->kind, VIT_LIGHT_SPOT);
+    assert_true(fabs(l->inner - 20) < 1e-4 && fabs(l->outer - 30) < 1e-4);
+    assert_true(fabs(l->position[0]) < 1e-6 && fabs(l->position[1] - 3) < 1e-6 && fabs(l->position[2] + 1) < 1e-6);
+    assert_true(fabs(l->direction[2] - 1) < 1e-6);
+    assert_true(fabs(l->stated[0] - 2) < 1e-6);
+    model_free(&m);
+    put_fbx("0,0,0,1,0,0,0,0,1", z_up, 1, FBX_LIGHT("2", "40", "300"), FBX_LAMP);
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_true(model_light_named(&m, "lamp")->outer == 90.0);
+    assert_non_null(strstr(warnings, "light 'lamp': a cone of 300 degrees is cut to 180"));
+    model_free(&m);
+    refuse(FILE_OF("t.fbx"), true, "a cone of 300 degrees");
+    put_fbx("0,0,0,1,0,0,0,0,1", z_up, 1, FBX_LIGHT("3", "40", "60"), FBX_LAMP);
+    refuse(FILE_OF("t.fbx"), true, "light 'lamp' is no point, spot or directional light");
+}
+
+/* A TGA of one texel, (0, 0, 255), as base64: FBX in text holds its pictures so. */
+#define BLUE "AAACAAAAAAAAAAAAAQABABgg/wAA"
+#define FBX_PICTURE(texture, video)                                                                                            \
+    "\tMaterial: 400, \"Material::paint\", \"\" {\n\t\tVersion: 102\n\t\tShadingModel: \"phong\"\n\t\tProperties70:  {\n"      \
+    "\t\t}\n\t}\n\tTexture: 500, \"Texture::t\", \"\" {\n\t\tType: \"TextureVideoClip\"\n\t\tVersion: 202\n"                   \
+    "\t\tTextureName: \"Texture::t\"\n\t\tMedia: \"Video::v\"\n\t\tFileName: \"" texture                                       \
+    "\"\n\t\tRelativeFilename: \"" texture                                                                                     \
+    "\"\n\t}\n\tVideo: 600, \"Video::v\", \"Clip\" {\n\t\tType: \"Clip\"\n\t\tFileName: \"" video                              \
+    "\"\n\t\tRelativeFilename: \"" video "\"\n\t\tContent: ,\n\t\t\t\"" BLUE "\"\n\t}\n"
+#define FBX_PAINT "\tC: \"OO\",400,200\n\tC: \"OP\",500,400, \"DiffuseColor\"\n\tC: \"OO\",600,500\n"
+
+static void pictures_in_fbx_are_found_by_name(void **state) {
+    model m;
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        if (i == 0)
+            put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, FBX_PICTURE("t.fbm/blue.tga", "t.fbm/blue.tga"), FBX_PAINT);
+        else /* by its last part, on whatever disk it was */
+            put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, FBX_PICTURE("C:\\\\work\\\\blue.tga", "pictures/blue.tga"), FBX_PAINT);
+        import_good(FILE_OF("t.fbx"), &m);
+        assert_string_equal(warnings, "");
+        assert_int_equal(m.image_count, 1);
+        assert_int_equal(m.materials[0].image, 0);
+        assert_true(m.images[0].width == 1 && m.images[0].rgba[0] == 0 && m.images[0].rgba[2] == 255);
+        model_free(&m);
+    }
+}
+
+static void collada_lists_may_begin_with_space(void **state) {
+    model m;
+    (void)state;
+    put_dae(DAE_UNIT("2", "Y"), "\n\t 0 0 0 1 0 0 0 1 0\n",
+            "<library_lights><light id=\"l\" name=\"lamp\"><technique_common><point><color>  0.5 0.25\n1 </color></point>"
+            "</technique_common></light></library_lights>");
+    import_good(FILE_OF("t.dae"), &m);
+    box_is(&m, 0, 0, 0, 2, 2, 0);
+    assert_int_equal(m.light_count, 1);
+    assert_true(m.lights[0].stated[0] == 0.5 && m.lights[0].stated[1] == 0.25 && m.lights[0].stated[2] == 1.0);
+    model_free(&m);
+}
+
+#define DAE_SPOT(rest)                                                                                                         \
+    "<library_lights><light id=\"l\" name=\"lamp\"><technique_common><spot><color>1 1 1</color>" rest                          \
+    "</spot></technique_common></light></library_lights>"
+
+static void spots_of_collada_have_one_angle(void **state) {
+    static const struct {
+        const char *light;
+        double outer;
+        const char *said;
+    } rows[] = {{DAE_SPOT("<falloff_angle>60</falloff_angle>"), 30, ""},
+                {DAE_SPOT("<falloff_angle>60</falloff_angle><falloff_exponent>0.15</falloff_exponent>"), 30, "hard edge"},
+                {DAE_SPOT("<falloff_angle>200</falloff_angle>"), 90, "a cone of 200 degrees is cut to 180"},
+                {DAE_SPOT("<falloff_angle>700</falloff_angle>"), 90, "a cone of 700 degrees is cut to 180"}};
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put_dae("", "0 0 0 1 0 0 0 1 0", rows[i].light);
+        import_good(FILE_OF("t.dae"), &m);
+        assert_int_equal(m.light_count, 1);
+        assert_true(fabs(m.lights[0].outer - rows[i].outer) < 1e-4 && fabs(m.lights[0].inner - rows[i].outer) < 1e-4);
+        if (rows[i].said[0])
+            assert_non_null(strstr(warnings, rows[i].said));
+        else
+            assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+}
+
+static void colours_of_3mf_are_told_of(void **state) {
+    static const char group[] =
+        "<m:colorgroup id=\"7\"><m:color color=\"#FF0000\"/><m:color color=\"#00FF00\"/></m:colorgroup>",
+                      base[] = "<basematerials id=\"7\"><base name=\"red\" displaycolor=\"#FF0000\"/><base name=\"green\" "
+                               "displaycolor=\"#00FF00\"/></basematerials>";
+    model m;
+    (void)state;
+    put_3mf("", group, " pid=\"7\" p1=\"0\"");
+    import_good(FILE_OF("t.3mf"), &m);
+    assert_non_null(strstr(warnings, "3MF: colours of triangles are left out"));
+    model_free(&m);
+    refuse(FILE_OF("t.3mf"), true, "colours of triangles are left out");
+    put_3mf("", base, " pid=\"7\" p1=\"0\"");
+    import_good(FILE_OF("t.3mf"), &m);
+    assert_string_equal(warnings, "");
+    assert_true(near3(m.materials[0].albedo, 1, 0, 0));
+    model_free(&m);
+    put_3mf("", base, " pid=\"7\" p1=\"0\"/><triangle v1=\"0\" v2=\"2\" v3=\"1\" pid=\"7\" p1=\"1\"");
+    import_good(FILE_OF("t.3mf"), &m);
+    assert_non_null(strstr(warnings, "several materials"));
+    model_free(&m);
+}
+
+static void case_embedded_texture(void **state) {
+    model m;
+    (void)state;
+    const char *path = import_case("fbx-embedded-texture/sign.fbx", &m);
+    assert_int_equal(m.image_count, 1);
+    const model_image *image = &m.images[0];
+    const uint8_t *top = image->rgba, *bottom = top + 4 * (size_t)image->width * (size_t)(image->height - 1);
+    assert_true(top[2] > 200 && top[0] < 50 && bottom[0] > 200 && bottom[2] < 50); /* red below, blue above */
+    model_free(&m);
+    vit_text why;
+    assert_int_equal(import_file(path, true, &m, &why), VIT_OK);
+    model_free(&m);
+}
+
+static void cases_collada(void **state) {
+    model m;
+    (void)state;
+    (void)import_case("dae-leading-blank/blank.dae", &m);
+    assert_true(m.triangles == 1 && near3(m.materials[0].albedo, 0.8, 0.4, 0.2));
+    model_free(&m);
+    (void)import_case("dae-transparency-zero/zero.dae", &m);
+    assert_true(m.triangles == 1);
+    model_free(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        T(spots_of_fbx_have_full_angles_and_stand_where_the_axes_put_them),
+        T(pictures_in_fbx_are_found_by_name),
+        T(collada_lists_may_begin_with_space),
+        T(spots_of_collada_have_one_angle),
+        T(colours_of_3mf_are_told_of),
+        T(case_embedded_texture),
+        T(cases_collada),
+    };
+    return cmocka_run_group_tests(tests, make_folder, NULL);
+}

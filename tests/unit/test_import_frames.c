@@ -1,0 +1,237 @@
+/* Unit and up axis of files that Assimp reads: its releases differ in what they apply of a file's axes, and none applies FBX's
+ * or 3MF's unit. Each file is written here (foreign_lab.h); right is worked out by hand: the triangle in x and y, as long as
+ * the unit. */
+#define FOLDER VIT_BUILD_DIR "/tests/unit/import_frames"
+#include "foreign_lab.h"
+#include "import/import_frame.h"
+
+static void frame_is(const model *m, double unit, unsigned up, unsigned unit_by, unsigned up_by) {
+    const model_frame *f = &m->formats[0].frame;
+    assert_int_equal(m->format_count, 1);
+    if (fabs(f->unit - unit) > 1e-9 || f->up != up || f->unit_by != unit_by || f->up_by != up_by)
+        fail_msg("unit %.9g by %u, axis %u by %u", f->unit, f->unit_by, f->up, f->up_by);
+}
+
+/* ---- FBX ---- */
+
+static void fbx_is_in_its_unit_and_on_its_axes(void **state) {
+    static const struct {
+        const char *corners;
+        int axes[6];
+        double unit, size;
+        unsigned up;
+    } rows[] = {
+        {"0,0,0,1,0,0,0,1,0", {0, 1, 1, 1, 2, 1}, 1, 0.01, FRAME_Y},  /* Maya, Blender */
+        {"0,0,0,1,0,0,0,0,1", {0, 1, 2, 1, 1, -1}, 1, 0.01, FRAME_Z}, /* 3ds Max */
+        {"0,0,0,1,0,0,0,0,1", {0, 1, 2, 1, 1, -1}, 2.54, 0.0254, FRAME_Z},
+        {"0,0,0,1,0,0,0,1,0", {0, 1, 1, 1, 2, 1}, 100, 1, FRAME_Y},
+        {"0,0,0,0,1,0,1,0,0", {1, 1, 0, 1, 2, -1}, 100, 1, FRAME_X},
+        {"0,0,0,-1,0,0,0,0,1", {0, -1, 2, 1, 1, 1}, 100, 1, FRAME_Z}, /* the front is +y */
+    };
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put_fbx(rows[i].corners, rows[i].axes, rows[i].unit, "", "");
+        import_good(FILE_OF("t.fbx"), &m);
+        box_is(&m, 0, 0, 0, rows[i].size, rows[i].size, 0);
+        frame_is(&m, rows[i].size, rows[i].up, FRAME_BY_FILE, FRAME_BY_FILE);
+        assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+}
+
+static void a_unit_or_axes_that_are_none_are_told(void **state) {
+    static const int twice[6] = {0, 1, 0, 1, 2, 1};
+    model m;
+    (void)state;
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, -3, "", "");
+    import_good(FILE_OF("t.fbx"), &m);
+    box_is(&m, 0, 0, 0, 0.01, 0.01, 0);
+    assert_non_null(strstr(warnings, "UnitScaleFactor of -3"));
+    model_free(&m);
+    refuse(FILE_OF("t.fbx"), true, "UnitScaleFactor of -3");
+    put_fbx("0,0,0,1,0,0,0,1,0", twice, 1, "", "");
+    import_good(FILE_OF("t.fbx"), &m);
+    box_is(&m, 0, 0, 0, 0.01, 0.01, 0);
+    assert_non_null(strstr(warnings, "its three axes are not three"));
+    model_free(&m);
+}
+
+static void the_scene_file_beats_unit_and_axis(void **state) {
+    model m;
+    (void)state;
+    put_fbx("0,0,0,1,0,0,0,0,1", z_up, 1, "", "");
+    import_with("t.fbx", "units = 0.5;", &m);
+    box_is(&m, 0, 0, 0, 0.5, 0.5, 0);
+    frame_is(&m, 0.5, FRAME_Z, FRAME_BY_SCENE, FRAME_BY_FILE);
+    model_free(&m);
+    import_with("t.fbx", "up = \"y\"; scale = 10;", &m); /* z stays z, which is to the viewer */
+    box_is(&m, 0, 0, 0, 0.1, 0, 0.1);
+    frame_is(&m, 0.01, FRAME_Y, FRAME_BY_FILE, FRAME_BY_SCENE);
+    model_free(&m);
+    put(FILE_OF("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+    import_with("t.obj", "units = 0.001; up = \"z\"; translate = [5, 0, 0];", &m);
+    box_is(&m, 5, 0, 0, 5.001, 0.001, 0);
+    frame_is(&m, 0.001, FRAME_Z, FRAME_BY_SCENE, FRAME_BY_SCENE);
+    model_free(&m);
+    import_with("t.obj", "up = \"auto\"; units = \"auto\";", &m);
+    box_is(&m, 0, 0, 0, 1, 0, 1);
+    frame_is(&m, 1, FRAME_Y, FRAME_BY_NOBODY, FRAME_BY_NOBODY);
+    model_free(&m);
+    put_gltf(UVS, MATERIAL("\"doubleSided\":true") "," ONE_NODE);
+    import_with("quad.gltf", "up = \"x\";", &m);
+    box_is(&m, -1, 0, 0, 0, 1, 0);
+    frame_is(&m, 1, FRAME_X, FRAME_BY_FORMAT, FRAME_BY_SCENE);
+    model_free(&m);
+}
+
+/* ---- COLLADA ---- */
+
+static void collada_is_in_its_unit_and_on_its_axis(void **state) {
+    static const struct {
+        const char *asset, *corners;
+        double unit;
+        unsigned up;
+    } rows[] = {{"", "0 0 0 1 0 0 0 1 0", 1, FRAME_Y},
+                {DAE_UNIT("0.0254", "Y"), "0 0 0 1 0 0 0 1 0", 0.0254, FRAME_Y},
+                {DAE_UNIT("0.01", "Z"), "0 0 0 1 0 0 0 0 1", 0.01, FRAME_Z},
+                {DAE_UNIT("2", "X"), "0 0 0 0 -1 0 1 0 0", 2, FRAME_X}};
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put_dae(rows[i].asset, rows[i].corners, "");
+        import_good(FILE_OF("t.dae"), &m);
+        box_is(&m, 0, 0, 0, rows[i].unit, rows[i].unit, 0);
+        frame_is(&m, rows[i].unit, rows[i].up, FRAME_BY_FILE, FRAME_BY_FILE);
+        model_free(&m);
+        /* What Assimp has applied is taken back. */
+        import_with("t.dae", "units = 3;", &m);
+        box_is(&m, 0, 0, 0, 3, 3, 0);
+        model_free(&m);
+    }
+    import_with("t.dae", "units = 1; up = \"y\";", &m); /* as the numbers stand */
+    box_is(&m, 0, -1, 0, 1, 0, 0);
+    frame_is(&m, 1, FRAME_Y, FRAME_BY_SCENE, FRAME_BY_SCENE);
+    model_free(&m);
+}
+
+/* ---- 3MF, AMF ---- */
+
+static void files_of_3mf_are_in_their_unit_and_z_is_up(void **state) {
+    static const struct {
+        const char *unit;
+        double metres;
+        unsigned by;
+    } rows[] = {{"", 0.001, FRAME_BY_FORMAT},
+                {"unit=\"millimeter\"", 0.001, FRAME_BY_FILE},
+                {"unit = 'inch'", 0.0254, FRAME_BY_FILE},
+                {"xml:lang=\"en-US\"\n unit=\"micron\"", 1e-6, FRAME_BY_FILE},
+                {"unit=\"foot\"", 0.3048, FRAME_BY_FILE},
+                {"unit=\"centimeter\"", 0.01, FRAME_BY_FILE},
+                {"unit=\"meter\"", 1, FRAME_BY_FILE}};
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put_3mf(rows[i].unit, "", "");
+        import_good(FILE_OF("t.3mf"), &m);
+        box_is(&m, 0, 0, 0, 10 * rows[i].metres, 10 * rows[i].metres, 0);
+        frame_is(&m, rows[i].metres, FRAME_Z, rows[i].by, FRAME_BY_FORMAT);
+        assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+    put_3mf("unit=\"cubit\"", "", "");
+    refuse(FILE_OF("t.3mf"), false, "has unit 'cubit', which is none");
+}
+
+static void files_of_amf_are_in_their_unit(void **state) {
+    static const char amf[] =
+        "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
+        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
+        "</volume></mesh></object></amf>";
+    char text[1024];
+    model m;
+    (void)state;
+    (void)snprintf(text, sizeof text, amf, "unit=\"inch\"");
+    put(FILE_OF("t.amf"), text);
+    import_good(FILE_OF("t.amf"), &m);
+    box_is(&m, 0, 0, 0, 0.0254, 0.0254, 0);
+    frame_is(&m, 0.0254, FRAME_Y, FRAME_BY_FILE, FRAME_BY_NOBODY);
+    model_free(&m);
+    (void)snprintf(text, sizeof text, amf, "");
+    put(FILE_OF("t.amf"), text);
+    import_good(FILE_OF("t.amf"), &m);
+    frame_is(&m, 0.001, FRAME_Y, FRAME_BY_FORMAT, FRAME_BY_NOBODY);
+    model_free(&m);
+}
+
+/* ---- the rest ---- */
+
+static void a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says(void **state) {
+    model m;
+    (void)state;
+    put(FILE_OF("t.stl"), "solid t\nfacet normal 0 -1 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\n"
+                          "endfacet\nendsolid t\n");
+    import_good(FILE_OF("t.stl"), &m);
+    box_is(&m, 0, 0, 0, 1, 0, 1);
+    frame_is(&m, 1, FRAME_Y, FRAME_BY_NOBODY, FRAME_BY_NOBODY);
+    model_free(&m);
+    import_with("t.stl", "units = 0.001; up = \"z\";", &m);
+    box_is(&m, 0, 0, 0, 0.001, 0.001, 0);
+    normal_at(&m, 0, 0, 0, 0, 0, 1); /* -y of the file is to the viewer */
+    model_free(&m);
+}
+
+static void x3d_is_metres_and_y_up(void **state) {
+    model m;
+    (void)state;
+    put(FILE_OF("t.x3d"),
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile=\"Interchange\" version=\"3.0\"><Scene><Shape>"
+        "<IndexedFaceSet coordIndex=\"0 1 2 -1\"><Coordinate point=\"0 0 0 1 0 0 0 1 0\"/></IndexedFaceSet>"
+        "</Shape></Scene></X3D>\n");
+    import_good(FILE_OF("t.x3d"), &m);
+    box_is(&m, 0, 0, 0, 1, 1, 0);
+    frame_is(&m, 1, FRAME_Y, FRAME_BY_FORMAT, FRAME_BY_FORMAT);
+    model_free(&m);
+}
+
+static void frames_in_words(void **state) {
+    char text[FRAME_TEXT];
+    (void)state;
+    assert_string_equal(frame_text(&(model_frame){0.01f, FRAME_Z, FRAME_BY_FILE, FRAME_BY_FILE}, text),
+                        "1 unit is 0.01 m and z is up: the file says so");
+    assert_string_equal(frame_text(&(model_frame){0.001, FRAME_Z, FRAME_BY_SCENE, FRAME_BY_FORMAT}, text),
+                        "1 unit is 0.001 m: the scene file says so; z is up: its format has it so");
+}
+
+/* ---- files of strangers ---- */
+
+static void cases_units(void **state) {
+    model m;
+    (void)state;
+    (void)import_case("units/k_zup.fbx", &m);
+    box_is(&m, 0, 0, 0, 0.01, 0.01, 0);
+    model_free(&m);
+    (void)import_case("units/k_mm.3mf", &m);
+    box_is(&m, 0.005, 0, 0, 0.006, 0.001, 0);
+    model_free(&m);
+    (void)import_case("units/k_zcm.dae", &m);
+    box_is(&m, 0, 0, 0, 0.01, 0.01, 0);
+    model_free(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        T(fbx_is_in_its_unit_and_on_its_axes),
+        T(a_unit_or_axes_that_are_none_are_told),
+        T(the_scene_file_beats_unit_and_axis),
+        T(collada_is_in_its_unit_and_on_its_axis),
+        T(files_of_3mf_are_in_their_unit_and_z_is_up),
+        T(files_of_amf_are_in_their_unit),
+        T(a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says),
+        T(x3d_is_metres_and_y_up),
+        T(frames_in_words),
+        T(cases_units),
+    };
+    return cmocka_run_group_tests(tests, make_folder, NULL);
+}
