@@ -78,6 +78,16 @@ bool import_map(importer *im, const char *path, import_bytes *out) {
     return true;
 }
 
+void import_drop_front(import_bytes *bytes, size_t size) {
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), whole = size < bytes->mapped ? size / page * page : 0;
+    if (whole == 0)
+        return;
+    (void)munmap((void *)(uintptr_t)bytes->at, whole);
+    bytes->at += whole;
+    bytes->size -= whole;
+    bytes->mapped -= whole;
+}
+
 void import_drop_bytes(import_bytes *bytes) {
     if (bytes->mapped > 0)
         (void)munmap((void *)(uintptr_t)bytes->at, bytes->mapped);

@@ -90,8 +90,10 @@ typedef struct mesh_part {
     mesh_floats color;              /* 3, linear */
     mesh_floats uv[IMPORT_UV_SETS]; /* 2 */
     bool v_up;                      /* v = 0 is the images' last row */
-    const uint32_t *corner;         /* 3 a triangle; those out of range are counted and dropped */
-    const uint32_t *smoothing;      /* one a triangle, or NULL: groups by which normals are made */
+    /* 3 a triangle; those out of range are counted and dropped. It may be where the model's next triangles go, if there is room
+     * for all of the part's. */
+    const uint32_t *corner;
+    const uint32_t *smoothing; /* one a triangle, or NULL: groups by which normals are made */
     size_t triangles;
     unsigned material; /* of the file */
 } mesh_part;
@@ -136,6 +138,8 @@ typedef struct import_bytes {
 /* The whole of a plain file that is not empty, noted as an input. */
 bool import_map(importer *im, const char *path, import_bytes *out);
 void import_drop_bytes(import_bytes *bytes);
+/* Up to `size` bytes at its beginning, which is mapped, are done with. */
+void import_drop_front(import_bytes *bytes, size_t size);
 
 /* ---- import_frame.c ---- */
 

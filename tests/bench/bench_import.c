@@ -149,6 +149,34 @@ static void write_grid(const char *folder, uint32_t edge, char path[BENCH_PATH])
     free(corner);
 }
 
+/* A height field of edge * edge * 2 triangles, binary little-endian, as scanners and sculpting programs write them. */
+static void write_ply(const char *folder, uint32_t edge, char path[BENCH_PATH]) {
+    const uint32_t vertices = (edge + 1) * (edge + 1), triangles = 2 * edge * edge;
+    (void)snprintf(path, BENCH_PATH, "%s/grid.ply", folder);
+    FILE *f = fopen(path, "wb");
+    if (!f)
+        bench_fail("%s cannot be written", path);
+    (void)fprintf(f,
+                  "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\nproperty float y\n"
+                  "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face %u\n"
+                  "property list uchar int vertex_indices\nend_header\n",
+                  vertices, triangles);
+    for (uint32_t i = 0; i < vertices; i++) {
+        const float x = (float)(i % (edge + 1)), y = (float)(i / (edge + 1)), z = 20.0f * sinf(x / 50.0f) * cosf(y / 70.0f);
+        const float v[6] = {x,   y, z, -0.4f * cosf(x / 50.0f) * cosf(y / 70.0f), 0.28f * sinf(x / 50.0f) * sinf(y / 70.0f),
+                            1.0f};
+        (void)fwrite(v, sizeof v, 1, f);
+    }
+    for (uint32_t i = 0; i < triangles; i++) {
+        const uint32_t a = i / 2 % edge + i / 2 / edge * (edge + 1), b = a + edge + 1, odd = i % 2;
+        const uint32_t corner[3] = {a + odd, odd ? b + 1 : a + 1, b};
+        (void)fputc(3, f);
+        (void)fwrite(corner, sizeof corner, 1, f);
+    }
+    if (fclose(f) != 0)
+        bench_fail("%s cannot be written", path);
+}
+
 static void copy(const char *from, const char *to) {
     char bytes[65536];
     FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
@@ -183,6 +211,8 @@ int main(void) {
     bench_folder(folder);
     write_grid(folder, bench_smoke() ? 16 : 1000, path);
     compare(&c, "grid", path);
+    write_ply(folder, bench_smoke() ? 16 : 1582, path);
+    compare(&c, "ply", path);
     if (!bench_smoke() && copy_sponza(folder, path))
         compare(&c, "sponza", path);
     csv_close(&c, "import");

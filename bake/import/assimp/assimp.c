@@ -76,8 +76,6 @@ static bool read_scene(assimp_scene *a, const scene_mesh *mesh) {
 }
 
 static bool read(importer *im, const scene_mesh *mesh) {
-    if (!assimp_check_ply(im))
-        return false;
     assimp_scene *a = calloc(1, sizeof *a);
     if (!a)
         return import_fail(im, "out of memory");

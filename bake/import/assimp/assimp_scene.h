@@ -25,10 +25,6 @@ typedef struct assimp_scene {
     bool plain_colors;   /* textures and vertex colours are left out: releases of Assimp read them differently */
 } assimp_scene;
 
-/* assimp_ply.c: refuses a PLY file whose header has no end or lines of no known kind: Assimp's reader never comes back from
- * them. Every other file passes. */
-bool assimp_check_ply(importer *im);
-
 /* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
 struct aiFileIO assimp_files(assimp_scene *a);
 

@@ -12,7 +12,8 @@
     X(pack, 4096)                                                                                                              \
     X(scene, 8192)                                                                                                             \
     X(mesh, 4096)                                                                                                              \
-    X(gltf, 4096)
+    X(gltf, 4096)                                                                                                              \
+    X(ply, 4096)
 
 #define X(name, most) void fuzz_##name(const uint8_t *data, size_t size);
 FUZZ_TARGETS(X)
