@@ -177,6 +177,26 @@ static void write_ply(const char *folder, uint32_t edge, char path[BENCH_PATH]) 
         bench_fail("%s cannot be written", path);
 }
 
+/* The same as OBJ, with six digits behind the point, as exporters write them. */
+static void write_obj_grid(const char *folder, uint32_t edge, char path[BENCH_PATH]) {
+    (void)snprintf(path, BENCH_PATH, "%s/grid.obj", folder);
+    FILE *f = fopen(path, "w");
+    if (!f)
+        bench_fail("%s cannot be written", path);
+    for (uint32_t y = 0; y <= edge; y++)
+        for (uint32_t x = 0; x <= edge; x++)
+            (void)fprintf(f, "v %.6f %.6f %.6f\nvt %.6f %.6f\n", x / 7.0, y / 7.0, ((x * y) % 64) / 640.0, x / 8.0, y / 8.0);
+    (void)fprintf(f, "vn 0.000000 0.000000 1.000000\no grid\n");
+    for (uint32_t y = 0; y < edge; y++)
+        for (uint32_t x = 0; x < edge; x++) {
+            const uint32_t a = y * (edge + 1) + x + 1, b = a + edge + 1;
+            (void)fprintf(f, "f %u/%u/1 %u/%u/1 %u/%u/1\nf %u/%u/1 %u/%u/1 %u/%u/1\n", a, a, a + 1, a + 1, b, b, a + 1, a + 1,
+                          b + 1, b + 1, b, b);
+        }
+    if (fclose(f) != 0)
+        bench_fail("%s cannot be written", path);
+}
+
 static void copy(const char *from, const char *to) {
     char bytes[65536];
     FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
@@ -190,15 +210,15 @@ static void copy(const char *from, const char *to) {
     (void)fclose(out);
 }
 
-/* Its JSON and its buffer alone. */
-static bool copy_sponza(const char *folder, char path[BENCH_PATH]) {
+/* The mesh and what of it lies in a file beside it (".bin"), without the pictures. */
+static bool copy_scene(const bench_scene *of, const char *beside, const char *folder, char path[BENCH_PATH]) {
     char mesh[BENCH_PATH], to[BENCH_PATH];
-    if (!scene_mesh_path(&bench_scenes[1], mesh))
+    if (!scene_mesh_path(of, mesh))
         return false;
-    (void)snprintf(path, BENCH_PATH, "%s/sponza.gltf", folder);
+    (void)snprintf(path, BENCH_PATH, "%s/%s", folder, strrchr(mesh, '/') + 1);
     copy(mesh, path);
-    (void)snprintf(to, sizeof to, "%s/sponza.bin", folder);
-    memcpy(strrchr(mesh, '.'), ".bin", 5);
+    (void)snprintf(strrchr(mesh, '.'), 5, "%s", beside);
+    (void)snprintf(to, sizeof to, "%s/%s", folder, strrchr(mesh, '/') + 1);
     copy(mesh, to);
     return true;
 }
@@ -213,8 +233,12 @@ int main(void) {
     compare(&c, "grid", path);
     write_ply(folder, bench_smoke() ? 16 : 1582, path);
     compare(&c, "ply", path);
-    if (!bench_smoke() && copy_sponza(folder, path))
+    if (!bench_smoke() && copy_scene(&bench_scenes[1], ".bin", folder, path))
         compare(&c, "sponza", path);
+    write_obj_grid(folder, bench_smoke() ? 16 : 700, path);
+    compare(&c, "OBJ grid", path);
+    if (!bench_smoke() && copy_scene(&bench_scenes[2], ".mtl", folder, path))
+        compare(&c, "sibenik", path);
     csv_close(&c, "import");
     return VIT_OK;
 }

@@ -12,7 +12,9 @@ static bool read_all(obj_file *o, const scene_mesh *mesh) {
         return import_fail(o->im, "is empty or cannot be read");
     if (is_utf16(&o->bytes))
         return import_fail(o->im, "is text of 16 bits a character, and has to be UTF-8");
-    return obj_read(o) && mtl_read(o) && import_begin_meshes(o->im, o->meshes.count) && mtl_transparency(o) &&
+    const bool fine = obj_read(o);
+    import_drop_bytes(&o->bytes); /* a part of the memory that the model needs */
+    return fine && mtl_read(o) && import_begin_meshes(o->im, o->meshes.count) && mtl_transparency(o) &&
            obj_place(o, mesh->transform);
 }
 

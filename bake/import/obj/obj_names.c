@@ -1,4 +1,4 @@
-/* Names by number, found by their hash: files have thousands of materials. */
+/* Names by number, kept beyond the file that they come from, found by their hash: files have thousands of materials. */
 #include "import/obj/obj_file.h"
 #include <stdlib.h>
 #include <string.h>
@@ -49,13 +49,22 @@ uint32_t obj_name(importer *im, obj_names *names, obj_text name) {
     if (*slot == OBJ_NONE) {
         if (!import_room(im, &names->name, &names->room, names->count + 1, sizeof *names->name))
             return OBJ_NONE;
-        names->name[names->count] = name;
+        const size_t size = (size_t)(name.end - name.at);
+        char *copy = malloc(size + 1);
+        if (!copy) {
+            (void)import_fail(im, "out of memory");
+            return OBJ_NONE;
+        }
+        memcpy(copy, name.at, size);
+        names->name[names->count] = (obj_text){copy, copy + size};
         *slot = (uint32_t)names->count++;
     }
     return *slot;
 }
 
 void obj_free_names(obj_names *names) {
+    for (size_t i = 0; i < names->count; i++)
+        free((void *)(uintptr_t)names->name[i].at);
     free(names->name);
     free(names->slot);
     *names = (obj_names){0};

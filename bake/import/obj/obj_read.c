@@ -138,12 +138,12 @@ static bool leave_out(obj_file *o, obj_text word, obj_text line) {
 }
 
 /* ZBrush and ZRemesher write colours of vertices as comments. */
-static bool read_comment(obj_file *o, obj_text line) {
+static bool read_comment(obj_file *o, const char *at, const char *end) {
     static const char mark[] = "#MRGB";
     const size_t size = sizeof mark - 1;
-    if ((size_t)(line.end - line.at) < size || memcmp(line.at, mark, size) != 0)
+    if ((size_t)(end - at) < size || memcmp(at, mark, size) != 0)
         return true;
-    return say_once(o, &o->painted, "colours of vertices in comments are left out", (obj_text){line.at, line.at + size});
+    return say_once(o, &o->painted, "colours of vertices in comments are left out", (obj_text){at, at + size});
 }
 
 /* ---- all of them ---- */
@@ -167,12 +167,9 @@ static bool read_statement(obj_file *o, obj_text word, obj_text line) {
 }
 
 static bool read_line(obj_file *o, obj_text line) {
-    const obj_text whole = obj_rest(line);
-    if (obj_is_empty(whole))
-        return true;
-    if (*whole.at == '#')
-        return read_comment(o, whole);
     const obj_text word = obj_word(&line);
+    if (obj_is_empty(word))
+        return read_comment(o, word.at, line.end);
     const size_t size = (size_t)(word.end - word.at);
     if (size == 1 && word.at[0] == 'v')
         return read_position(o, line);

@@ -59,14 +59,21 @@ static void skip_blanks(obj_text *line) {
         line->at++;
 }
 
+static bool is_end(obj_text line) {
+    return line.at == line.end || is_blank(*line.at) || continues(line);
+}
+
 obj_text obj_word(obj_text *line) {
     skip_blanks(line);
     obj_text word = {line->at, line->at};
     if (line->at < line->end && *line->at == '#')
         line->at = line->end;
-    while (line->at < line->end && !is_blank(*line->at) && !continues(*line))
-        line->at++;
-    word.end = word.at < line->end && *word.at == '#' ? word.at : line->at;
+    else
+        while (!is_end(*line))
+            line->at++;
+    word.end = line->at;
+    if (word.at < word.end && *word.at == '#')
+        word.end = word.at;
     return word;
 }
 
@@ -83,12 +90,12 @@ bool obj_is(obj_text text, const char *word) {
 }
 
 bool obj_number(obj_text *line, float *out) {
-    obj_text ahead = *line;
-    const obj_text word = obj_word(&ahead);
     double value;
-    if (obj_is_empty(word) || import_number(word.at, word.end, true, &value) != word.end)
+    skip_blanks(line);
+    const char *end = import_number(line->at, line->end, true, &value);
+    if (!end || !is_end((obj_text){end, line->end}))
         return false;
+    line->at = end;
     *out = (float)value;
-    *line = ahead;
     return true;
 }
