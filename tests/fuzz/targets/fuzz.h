@@ -13,6 +13,7 @@
     X(scene, 8192)                                                                                                             \
     X(mesh, 4096)                                                                                                              \
     X(gltf, 4096)                                                                                                              \
+    X(obj, 4096)                                                                                                               \
     X(ply, 4096)
 
 #define X(name, most) void fuzz_##name(const uint8_t *data, size_t size);
