@@ -188,6 +188,7 @@ static void what_is_nowhere_is_said(void **state) {
     model m;
     vit_text why;
     (void)state;
+    (void)remove(FILE_OF("n.mtl")); /* of an earlier run */
     put(FILE_OF("a.mtl"), "newmtl a b\nKd .1\n");
     import_named("mtllib a.mtl gone.mtl", "", "its material file 'gone.mtl' is not there", &m);
     assert_true(near3(named(&m, "a b")->albedo, 0.1, 0.1, 0.1) && near3(named(&m, "c")->albedo, 0.6, 0.6, 0.6));
