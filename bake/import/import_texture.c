@@ -1,5 +1,6 @@
 #include "common/file_trouble.h"
 #include "import/image_file.h"
+#include "import/image_head.h"
 #include "import/importer.h"
 #include "import/webp.h"
 #include <stb/stb_image.h>
@@ -21,15 +22,18 @@ bool import_without(importer *im, const char *material, const char *name, const 
 
 /* Size and kind by the bytes alone. What keeps them from being an image that can be read, or NULL. */
 static const char *read_head(const uint8_t *bytes, size_t size, model_image *out, bool *webp) {
-    int channels;
     if (size == 0)
         return "is empty";
     if (size > IMAGE_FILE_MOST)
         return "is too long";
     *webp = webp_is_it(bytes, size);
+    const char *wrong = image_head_jpeg(bytes, size);
+    if (wrong)
+        return wrong;
+    if (size >= 12 && memcmp(bytes, "\xabKTX 20\xbb\r\n\x1a\n", 12) == 0)
+        return "is KTX2, which is not read: no library for it is packaged; save it as PNG, JPEG or WebP";
     if (*webp ? !webp_size(bytes, size, &out->width, &out->height)
-              : !stbi_info_from_memory(bytes, (int)size, &out->width, &out->height, &channels) ||
-                    stbi_is_hdr_from_memory(bytes, (int)size))
+              : !image_head_size(bytes, size, &out->width, &out->height) || stbi_is_hdr_from_memory(bytes, (int)size))
         return "is not an image that can be read (PNG, JPEG, WebP, TGA, BMP)";
     if (out->width < 1 || out->height < 1 || out->width > IMPORT_EDGE || out->height > IMPORT_EDGE)
         return "is larger than 16384 pixels";
@@ -44,6 +48,11 @@ const char *import_decode(importer *im, const uint8_t *bytes, size_t size, model
     const char *wrong = read_head(bytes, size, out, &webp);
     if (wrong)
         return wrong;
+    const double gamma = image_head_gamma(bytes, size);
+    if (gamma > 0.0 && im->rigour == MODEL_STRICT)
+        return "states a gamma that is not sRGB's";
+    if (gamma > 0.0)
+        import_warn(im, "texture '%.200s' states a gamma of %.4g; it is taken as sRGB", out->name, gamma);
     import_allow_texels(im, (uint64_t)out->width * (uint64_t)out->height);
     out->rgba = webp ? webp_decode(bytes, size, out->width, out->height)
                      : stbi_load_from_memory(bytes, (int)size, &out->width, &out->height, &channels, 4);

@@ -1,6 +1,5 @@
 #include "import/radiance.h"
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +15,62 @@ static bool next_line(const uint8_t *bytes, size_t size, size_t *at, char line[L
     snprintf(line, LINE, "%.*s", (int)(length < LINE ? length : LINE - 1), (const char *)bytes + *at);
     *at += length + 1;
     return true;
+}
+
+/* The offset of the resolution line; 0: there is none. */
+static size_t resolution_line(const uint8_t *bytes, size_t size, bool *rgbe) {
+    char line[LINE];
+    size_t at = 0;
+    *rgbe = true;
+    while (next_line(bytes, size, &at, line)) {
+        if (!line[0])
+            return at;
+        if (strncmp(line, "FORMAT=", 7) == 0)
+            *rgbe = strcmp(line + 7, "32-bit_rle_xyze") != 0;
+    }
+    return 0;
+}
+
+const char *radiance_stand(uint8_t *bytes, size_t size, radiance_order *order) {
+    char line[LINE], sign[2], axis[2];
+    int sides[2], used = 0;
+    bool rgbe;
+    const size_t start = resolution_line(bytes, size, &rgbe);
+    size_t at = start;
+    *order = (radiance_order){.columns = false};
+    if (!rgbe)
+        return "holds CIE XYZ, which is not read: save it as RGB";
+    if (start == 0 || !next_line(bytes, size, &at, line) ||
+        sscanf(line, "%c%c %9d %c%c %9d%n", &sign[0], &axis[0], &sides[0], &sign[1], &axis[1], &sides[1], &used) != 6 ||
+        used != (int)strlen(line) || axis[0] + axis[1] != 'X' + 'Y' || axis[0] < 'X' || axis[0] > 'Y' ||
+        !strchr("+-", sign[0]) || !strchr("+-", sign[1]))
+        return "is not an image that can be read: it has no resolution (\"-Y height +X width\")";
+    order->columns = axis[0] == 'X';
+    order->from_bottom = sign[order->columns] == '+';
+    order->from_right = sign[!order->columns] == '-';
+    const uint8_t *second = memchr(bytes + start + 1, sign[1], size - start - 1);
+    memcpy(bytes + start, "-Y", 2);
+    memcpy(bytes + (second - bytes), "+X", 2);
+    return NULL;
+}
+
+bool radiance_turn(float **rgb, int *width, int *height, const radiance_order *order) {
+    const size_t scans = (size_t)*height, pixels = (size_t)*width;
+    const size_t wide = order->columns ? scans : pixels, high = order->columns ? pixels : scans;
+    if (!order->columns && !order->from_bottom && !order->from_right)
+        return true;
+    float *from = *rgb, *to = malloc(3 * wide * high * sizeof *to);
+    for (size_t i = 0; to && i < scans * pixels; i++) {
+        const size_t scan = i / pixels, pixel = i % pixels, x = order->columns ? scan : pixel,
+                     y = order->columns ? pixel : scan;
+        const size_t column = order->from_right ? wide - 1 - x : x, row = order->from_bottom ? high - 1 - y : y;
+        memcpy(to + 3 * (row * wide + column), from + 3 * i, 3 * sizeof *to);
+    }
+    free(from);
+    *rgb = to;
+    *width = (int)wide;
+    *height = (int)high;
+    return to != NULL;
 }
 
 /* Multiplies the divisors by the numbers in the text, one each; false if one is no positive number. */

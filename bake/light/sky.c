@@ -7,6 +7,7 @@
 #include "common/fail.h"
 #include "common/file_trouble.h"
 #include "import/image_file.h"
+#include "import/image_head.h"
 #include "import/radiance.h"
 #include "common/sobol.h"
 #include "common/strict_math.h"
@@ -226,39 +227,62 @@ vit_status sky_from_texels(const float *rgb, int width, int height, double rotat
 
 /* ---- files ---- */
 
-/* The picture, linear and scaled. What is wrong with it, or NULL. */
-static const char *decode(const uint8_t *bytes, int size, double scale, int *width, int *height, float **rgb) {
+/* Codes of sRGB, in as many bits as the file has them, as light; NULL: broken. */
+static float *decode_srgb(const uint8_t *bytes, int size, size_t values) {
+    int width, height, channels;
+    const bool wide = stbi_is_16_bit_from_memory(bytes, size);
+    void *codes = wide ? (void *)stbi_load_16_from_memory(bytes, size, &width, &height, &channels, 3)
+                       : (void *)stbi_load_from_memory(bytes, size, &width, &height, &channels, 3);
+    float *rgb = codes ? malloc(values * sizeof *rgb) : NULL;
+    for (size_t i = 0; rgb && i < values; i++)
+        rgb[i] = (float)srgb_linear(wide ? ((const uint16_t *)codes)[i] / 65535.0 : ((const uint8_t *)codes)[i] / 255.0);
+    stbi_image_free(codes);
+    return rgb;
+}
+
+static bool scale_by(float *rgb, size_t values, double scale, const double divisor[3]) {
+    for (size_t i = 0; i < values; i++) {
+        const double c = (double)rgb[i] / divisor[i % 3] * scale;
+        if (!(c >= 0.0 && c <= (double)VIT_MAX_RADIANCE))
+            return false;
+        rgb[i] = (float)c;
+    }
+    return true;
+}
+
+/* What is wrong with the size, or NULL. */
+static const char *check_size(int size, int width, int height) {
+    if (width < 1 || height < 1 || width * (int64_t)height < 2 || (uint64_t)width * (uint64_t)height > MAX_TEXELS)
+        return "has no or more than 2^25 texels";
+    if (width != 2 * height)
+        return "is not twice as wide as high: a whole sky is wanted";
+    if ((uint64_t)width * (uint64_t)height > (uint64_t)size * 8 * 1032) /* deflate's 1032 to 1, a bit a texel */
+        return "is broken";
+    return NULL;
+}
+
+/* The picture, linear and scaled; bytes of a Radiance picture are put in order. What is wrong with it, or NULL. */
+static const char *decode(uint8_t *bytes, int size, double scale, int *width, int *height, float **rgb) {
     int channels;
     double divisor[3] = {1.0, 1.0, 1.0};
+    radiance_order order = {.columns = false};
+    const bool radiance = stbi_is_hdr_from_memory(bytes, size);
+    const char *wrong = radiance ? radiance_stand(bytes, (size_t)size, &order) : image_head_jpeg(bytes, (size_t)size);
     *rgb = NULL;
-    if (!stbi_info_from_memory(bytes, size, width, height, &channels))
+    if (wrong)
+        return wrong;
+    if (!image_head_size(bytes, (size_t)size, width, height))
         return "is not an image that can be read (HDR, PNG, JPEG, TGA, BMP)";
-    if (*width < 2 || *height < 1 || (uint64_t)*width * (uint64_t)*height > MAX_TEXELS)
-        return "has no or more than 2^25 texels";
-    if (*width != 2 * *height)
-        return "is not twice as wide as high: a whole sky is wanted";
-    if ((uint64_t)*width * (uint64_t)*height > (uint64_t)size * 8 * 1032) /* deflate's 1032 to 1, a bit a texel */
-        return "is broken";
+    wrong = order.columns ? check_size(size, *height, *width) : check_size(size, *width, *height);
+    if (!wrong && radiance)
+        wrong = radiance_check(bytes, (size_t)size, *width, *height, divisor);
+    if (wrong)
+        return wrong;
     const size_t values = 3 * (size_t)*width * (size_t)*height;
-    if (stbi_is_hdr_from_memory(bytes, size)) {
-        const char *wrong = radiance_check(bytes, (size_t)size, *width, *height, divisor);
-        if (wrong)
-            return wrong;
-        *rgb = stbi_loadf_from_memory(bytes, size, width, height, &channels, 3);
-    } else {
-        uint8_t *codes = stbi_load_from_memory(bytes, size, width, height, &channels, 3);
-        *rgb = codes ? malloc(values * sizeof **rgb) : NULL;
-        for (size_t i = 0; *rgb && i < values; i++)
-            (*rgb)[i] = (float)srgb_linear(codes[i] / 255.0);
-        stbi_image_free(codes);
-    }
-    for (size_t i = 0; *rgb && i < values; i++) {
-        const double c = (double)(*rgb)[i] / divisor[i % 3] * scale;
-        if (!(c >= 0.0 && c <= (double)VIT_MAX_RADIANCE))
-            return "has radiances, times sky.scale, that are not in 0..1e12";
-        (*rgb)[i] = (float)c;
-    }
-    return *rgb ? NULL : "is broken";
+    *rgb = radiance ? stbi_loadf_from_memory(bytes, size, width, height, &channels, 3) : decode_srgb(bytes, size, values);
+    if (!*rgb || !radiance_turn(rgb, width, height, &order))
+        return "is broken";
+    return scale_by(*rgb, values, scale, divisor) ? NULL : "has radiances, times sky.scale, that are not in 0..1e12";
 }
 
 vit_status sky_load(const char *file, double scale, double rotate, environment *out, vit_text *why) {

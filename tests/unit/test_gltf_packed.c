@@ -326,7 +326,7 @@ static void a_picture_that_cannot_be_had_is_told_of(void **state) {
     refuse(LAB_FILE, true, "texture 'broken.webp'");
     put(FILE_OF("a.ktx2"), "\xabKTX 20\xbb\r\n\x1a\n");
     import_picture(PICTURE("\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}", "{\"uri\":\"a.ktx2\"}"), &m);
-    assert_non_null(strstr(warnings, "texture 'a.ktx2' is not an image that can be read"));
+    assert_non_null(strstr(warnings, "texture 'a.ktx2' is KTX2, which is not read"));
     model_free(&m);
     import_picture(PICTURE("\"sampler\":0", "{\"uri\":\"a.ktx2\"}"), &m); /* no picture at all */
     assert_non_null(strstr(warnings, "texture 'textures[0]' is missing"));

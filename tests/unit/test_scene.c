@@ -3,6 +3,7 @@
  * field by field, and its defaults; then files that are missing, folders, too large, and includes. Scenes go through real
  * files, since these are half of the subject. Mistakes in settings: test_scene_mistakes.c. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/scene_files"
+#include "case_file.h"
 #include "scene_file_lab.h"
 
 static void near3(const double got[3], double x, double y, double z) {
@@ -338,8 +339,28 @@ static void no_prefix_of_a_scene_does_harm(void **state) {
     }
 }
 
+/* Files that one release of libconfig reads otherwise than the next (../shared/cases). */
+static void cases_scene_numbers(void **state) {
+    static const char *const rows[][2] = {
+        {"scene-numbers/octal.cfg", ":2: '010' begins with 0"},
+        {"scene-numbers/wrap.cfg", ":2: '4294967298' is beyond 32 bits"},
+        {"scene-numbers/comma.cfg", ":4: ',' has nothing behind it"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        scene s;
+        vit_text why = {{0}};
+        const char *path = case_file(rows[i][0]);
+        if (!path)
+            skip();
+        assert_int_equal(scene_read(path, &s, &why), VIT_BAD_INPUT);
+        assert_non_null(strstr(why.text, rows[i][1]));
+    }
+}
+
 int main(void) {
     static const struct CMUnitTest tests[] = {
+        T(cases_scene_numbers),
         T(every_setting_of_output_and_quality_is_read),
         T(every_setting_of_a_mesh_is_read),
         T(every_setting_of_the_camera_is_read_and_later_keys_repeat_earlier_ones),
