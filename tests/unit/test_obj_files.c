@@ -99,6 +99,11 @@ static void corners_name_what_they_have(void **state) {
             normal_at(&m, 1, 0, 0, 0, 0, 1);
         model_free(&m);
     }
+    model m;
+    import_text(CORNERS "vt .5 .5\nf 1 2 3\nf 1/1 3/1 4/1\n", "", &m); /* those without are at the origin */
+    uv_at(&m, 1, 0, 0, 1);
+    uv_at(&m, 0, 1, 0.5f, 0.5f);
+    model_free(&m);
 }
 
 static void a_face_may_stand_before_its_vertices(void **state) {
@@ -138,6 +143,10 @@ static void polygons_are_cut_whole(void **state) {
     char text[32768];
     model m;
     (void)state;
+    static const uint32_t fan[6] = {0, 1, 2, 0, 2, 3};
+    import_text(CORNERS "vn 0 0 1\nf 1//1 2//1 3//1 4//1\n", "", &m); /* as other readers cut it */
+    assert_memory_equal(m.index, fan, sizeof fan);
+    model_free(&m);
     import_text("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n", "", &m); /* reflex at the last */
     assert_true(m.triangles == 2 && fabs(area(&m) - 4.0) < 1e-6);
     model_free(&m);
@@ -161,8 +170,9 @@ static void polygons_are_cut_whole(void **state) {
 static void points_and_lines_are_counted(void **state) {
     model m;
     (void)state;
-    import_text(CORNERS "p 1 2\nl 1 2 3 4\nf 1 2\nf 1 2 3\n", "", &m);
+    import_text(CORNERS "p 1 2\nl 1 2 3 4\nf 1 2 3\nf 1 2\nf 1 3 4\n", "", &m);
     assert_int_equal(m.not_triangles, 2 + 3 + 1);
+    assert_true(m.triangles == 2 && fabs(area(&m) - 1.0) < 1e-6);
     model_free(&m);
 }
 
@@ -232,6 +242,9 @@ static void vertices_may_have_colours_or_weights(void **state) {
     model_free(&m);
     import_text("v 0 0 0\nv 1 0 0 .5 .25 1\nv 0 1 0\nf 1 2 3\n", "vertex colours that vary", &m);
     assert_true(near3(m.materials[0].albedo, 0.6, 0.6, 0.6));
+    model_free(&m);
+    import_text(CORNERS "v 0 0 0 .5 .25 1\nv 1 0 0 .5 .25 1\nv 0 1 0 .5 .25 1\nf 5 6 7\n", "", &m);
+    assert_true(near3(m.materials[0].albedo, 0.3, 0.15, 0.6));
     model_free(&m);
     import_text("v 0 0 0 2\nv 1 0 0 2\nv 0 1 0 2\nf 1 2 3\n", "", &m); /* a weight is none of a face's business */
     assert_true(m.hi[0] == 1);
