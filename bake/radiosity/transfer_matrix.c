@@ -14,6 +14,13 @@
 #define STEPS 128     /* of the power iteration; a number halves at most in one */
 #define TOO_NEAR 1e-3 /* to 1: the series would need more than MOST_BOUNCES reflections */
 
+/* As the program is loaded; before that AddressSanitizer is not ready for any function. */
+#if defined __x86_64__ && defined __GNUC__ && !defined __clang__ && !defined __SANITIZE_ADDRESS__
+#define WIDE_VECTORS __attribute__((target_clones("avx2", "default")))
+#else
+#define WIDE_VECTORS
+#endif
+
 typedef struct making {
     const transfer_matrix_input *in;
     float *albedo; /* count, of the channel at hand */
@@ -22,13 +29,22 @@ typedef struct making {
     atomic_bool failed, endless;
 } making;
 
-/* (F X) of one row: `sum` is a row of the block. */
-static void gather_row(const form_factors *f, uint32_t i, const float *x, float sum[WIDTH]) {
+/* (F X) of one row: `sum` is a row of the block. Four terms are added at a time, in their order, so that sums stay in registers
+ * meanwhile; wider vectors change no bit. */
+WIDE_VECTORS static void gather_row(const form_factors *f, uint32_t i, const float *x, float *restrict sum) {
+    const size_t end = f->first[i + 1];
+    size_t k = f->first[i];
     memset(sum, 0, WIDTH * sizeof *sum);
-    for (size_t k = f->first[i]; k < f->first[i + 1]; k++) {
-        const float *from = x + (size_t)f->to[k] * WIDTH, factor = f->factor[k];
-        for (uint32_t c = 0; c < WIDTH; c++)
-            sum[c] += factor * from[c];
+    for (; k + 4 <= end; k += 4) {
+        const float *a = x + (size_t)f->to[k] * WIDTH, *b = x + (size_t)f->to[k + 1] * WIDTH,
+                    *c = x + (size_t)f->to[k + 2] * WIDTH, *d = x + (size_t)f->to[k + 3] * WIDTH, *factor = f->factor + k;
+        for (uint32_t n = 0; n < WIDTH; n++)
+            sum[n] = (((sum[n] + factor[0] * a[n]) + factor[1] * b[n]) + factor[2] * c[n]) + factor[3] * d[n];
+    }
+    for (; k < end; k++) {
+        const float *a = x + (size_t)f->to[k] * WIDTH;
+        for (uint32_t n = 0; n < WIDTH; n++)
+            sum[n] += f->factor[k] * a[n];
     }
 }
 
@@ -130,6 +146,23 @@ static void block_done(void *user, double done) {
     step(user, done);
 }
 
+/* An earlier channel in which all patches have the same albedo, as grey ones do, has the same matrix. */
+static bool take_from_earlier(const making *m, transfer_matrix *out) {
+    const patch_set *p = m->in->patches;
+    const uint32_t n = m->in->factors->count, c = m->channel;
+    for (uint32_t from = 0; from < c; from++) {
+        uint32_t i = 0;
+        while (i < n && p->patch[i].albedo[from] == p->patch[i].albedo[c])
+            i++;
+        if (i < n)
+            continue;
+        memcpy(out->s[c], out->s[from], (size_t)n * n * sizeof *out->s[c]);
+        out->spectral[c] = out->spectral[from];
+        return true;
+    }
+    return false;
+}
+
 static vit_status make_channel(making *m, transfer_matrix *out, vit_text *why) {
     const form_factors *f = m->in->factors;
     const uint32_t n = f->count, c = m->channel;
@@ -172,7 +205,8 @@ vit_status transfer_matrix_make(const transfer_matrix_input *in, transfer_matrix
     if (!m.albedo || !out->s[0] || !out->s[1] || !out->s[2])
         status = bake_fail(why, VIT_FAILED, "transfer matrix: out of memory");
     for (; m.channel < TRANSFER_CHANNELS && status == VIT_OK; m.channel++)
-        status = make_channel(&m, out, why);
+        if (!take_from_earlier(&m, out))
+            status = make_channel(&m, out, why);
     free(m.albedo);
     if (status != VIT_OK)
         transfer_matrix_free(out);

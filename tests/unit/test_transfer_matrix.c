@@ -76,6 +76,22 @@ static void the_product_is_what_reflecting_one_after_the_other_gives(void **stat
     transfer_lab_close(&l);
 }
 
+/* Channels of the same albedos are made once: all patches have to be looked at. */
+static void one_patch_of_another_colour_gives_its_channel_a_matrix_of_its_own(void **state) {
+    enum { N = 70 };
+    transfer_lab l = transfer_lab_open(N, factor_even);
+    (void)state;
+    transfer_lab_paint(&l, 0.5f);
+    l.patches.patch[N - 1].albedo[1] = 0.9f;
+    transfer_matrix m = transfer_lab_matrix(&l, 2, 1);
+    assert_memory_equal(m.s[2], m.s[0], N * N * sizeof(float));
+    assert_true(m.spectral[2] == m.spectral[0] && m.spectral[1] > m.spectral[0]);
+    for (uint32_t i = 0; i < N * N; i++)
+        assert_true(m.s[1][i] > m.s[0][i]);
+    transfer_matrix_free(&m);
+    transfer_lab_close(&l);
+}
+
 static void the_bound_of_the_spectral_radius_is_one_and_close(void **state) {
     transfer_lab l = transfer_lab_open(200, factor_room);
     transfer_matrix m = transfer_lab_matrix(&l, 1, 0);
@@ -160,6 +176,7 @@ int main(void) {
         cmocka_unit_test(a_furnace_is_a_geometric_series),
         cmocka_unit_test(an_albedo_of_one_converges_nowhere_but_64_reflections_of_it_count),
         cmocka_unit_test(the_product_is_what_reflecting_one_after_the_other_gives),
+        cmocka_unit_test(one_patch_of_another_colour_gives_its_channel_a_matrix_of_its_own),
         cmocka_unit_test(the_bound_of_the_spectral_radius_is_one_and_close),
         cmocka_unit_test(threads_change_no_byte),
         cmocka_unit_test(an_order_is_a_permutation_that_makes_neighbours_alike),
