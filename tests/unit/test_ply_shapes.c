@@ -99,6 +99,41 @@ static void elements_may_stand_in_any_order(void **state) {
     model_free(&m);
 }
 
+/* More than what the reader lets go of at a time, in either order. */
+static void long_files_are_read_in_any_order(void **state) {
+    enum { FACES = 500000, ROW = 13 };
+    static const char *const vertex = "element vertex 4\n" XYZ "property float nx\nproperty float ny\nproperty float nz\n";
+    static const float points[24] = {0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1};
+    (void)state;
+    uint8_t *bytes = calloc(FACES + 100, ROW), *at;
+    assert_non_null(bytes);
+    for (int first = 0; first < 2; first++) { /* faces */
+        char face[128];
+        model m;
+        (void)snprintf(face, sizeof face, "element face %d\n" INDICES, FACES);
+        at = bytes + sprintf((char *)bytes, "ply\nformat binary_little_endian 1.0\n%s%send_header\n", first ? face : vertex,
+                             first ? vertex : face);
+        put_floats(at, points, first ? 0 : 24);
+        at += first ? 0 : 96;
+        for (int i = 0; i < FACES; i++, at += ROW) {
+            memset(at, 0, ROW);
+            at[0] = 3;
+            at[5] = (uint8_t)(1 + i % 2);
+            at[9] = (uint8_t)(2 + i % 2);
+        }
+        put_floats(at, points, first ? 24 : 0);
+        at += first ? 96 : 0;
+        put_bytes(FILE_OF("long.ply"), bytes, (size_t)(at - bytes));
+        import_good(FILE_OF("long.ply"), &m);
+        check_promises(&m);
+        assert_true(m.triangles == FACES && m.vertices == 4 && m.hi[0] == 1.0 && m.hi[1] == 1.0);
+        assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+    free(bytes);
+    assert_int_equal(unlink(FILE_OF("long.ply")), 0);
+}
+
 static void what_is_unknown_is_passed_over_and_said(void **state) {
     model m;
     (void)state;
@@ -303,6 +338,7 @@ int main(void) {
         T(the_first_byte_of_the_data_may_be_any),
         T(lines_of_text_may_end_in_any_way),
         T(elements_may_stand_in_any_order),
+        T(long_files_are_read_in_any_order),
         T(what_is_unknown_is_passed_over_and_said),
         T(polygons_are_cut_and_points_and_lines_counted),
         T(polygons_have_up_to_1024_corners),

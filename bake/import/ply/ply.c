@@ -106,7 +106,7 @@ static bool read(importer *im, const scene_mesh *mesh) {
 }
 
 static bool is_it(const uint8_t *head, size_t size) {
-    return size >= 4 && memcmp(head, "ply", 3) == 0 && memchr(" \t\r\n", head[3], 4);
+    return size >= 4 && memcmp(head, "ply", 3) == 0 && head[3] && strchr(" \t\r\n", head[3]);
 }
 
 /* No picture lies in the file. */

@@ -211,7 +211,7 @@ static bool check_property(ply_file *p, const ply_element *e, const ply_property
 }
 
 bool ply_read_header(ply_file *p) {
-    words line;
+    words line = {NULL, NULL};
     const size_t left = (size_t)(p->end - p->at);
     if (left < 4 || memcmp(p->at, "ply", 3) != 0 || !(is_blank((char)p->at[3]) || p->at[3] == '\n'))
         return import_fail(p->im, "is no PLY file");

@@ -2,7 +2,7 @@
 #include "import/ply/ply_file.h"
 #include <string.h>
 
-enum { PASSED = 1 << 24 }; /* bytes: what has been read of the file need not stay in memory */
+enum { PASSED = 1 << 22 }; /* bytes: what has been read of the file need not stay in memory */
 
 static size_t size_of(ply_type type) {
     static const uint8_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
