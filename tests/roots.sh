@@ -1,6 +1,7 @@
 #!/bin/sh
 # Same file, same pack, whatever the libraries of the system: makes a root of each release with debootstrap, builds the baker there (without
-# OpenCL, not optimised), and compares its packs of the cases and of the glTF samples with this machine's, byte by byte:
+# OpenCL, not optimised), and compares its packs of all mesh files among the cases, of the glTF samples and of small models with this machine's,
+# byte by byte; a file that both refuse is alike:
 #   tests/roots.sh [folder for roots, default build/roots] [releases, default "trixie noble"] [tools, default build/release]
 # Needs to be root, debootstrap and the network; new roots take a quarter of an hour. Exit 1 if a pack or an exit status differs, or a root cannot
 # be made or built in.
@@ -22,7 +23,7 @@ make_root() { # release
 build_there() { # release
     mkdir -p "$roots/$1/src" "$roots/$1/models"
     git archive HEAD | tar x -C "$roots/$1/src" &&
-        chroot "$roots/$1" sh -c 'cd /src && make -s -j"$(nproc)" config=debug OPENCL=0 build/debug-no-opencl/vitrine-bake' > "$roots/$1.log" 2>&1
+        env -u CC -u CXX chroot "$roots/$1" sh -c 'cd /src && make -s -j"$(nproc)" config=debug OPENCL=0 build/debug-no-opencl/vitrine-bake' > "$roots/$1.log" 2>&1
 }
 for r in $releases; do
     if ! make_root "$r" || ! build_there "$r"; then
@@ -31,9 +32,11 @@ for r in $releases; do
         continue
     fi
     [ ! -d "$cases" ] || cp -r "$cases" "$roots/$r/models/"
-    [ ! -d "$scenes/gltf" ] || cp -r "$scenes/gltf" "$roots/$r/models/"
+    for folder in gltf odd stanford cornell_box; do
+        [ ! -d "$scenes/$folder" ] || cp -r "$scenes/$folder" "$roots/$r/models/"
+    done
     same=0
-    for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' | sort); do
+    for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' -o -name '*.obj' -o -name '*.ply' -o -name '*.dae' -o -name '*.fbx' | sort); do
         rm -f "$roots/$r/there.vit" "$roots/here.vit"
         # shellcheck disable=SC2086 # options are several words
         chroot "$roots/$r" /src/build/debug-no-opencl/vitrine-bake "/models/$model" -o /there.vit $options 2> /dev/null

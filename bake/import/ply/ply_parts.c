@@ -9,10 +9,8 @@
 static void linear(const ply_color *c, float out[3]) {
     const bool encoded = c->type != PLY_FLOAT && c->type != PLY_DOUBLE;
     for (int k = 0; k < 3; k++) {
-        const float value = import_clamp((float)(c->value[k] / ply_most(c->type)), 1.0f);
-        out[k] = encoded
-                     ? (float)srgb_linear(c->value[k] >= 0.0 && value < 1.0f ? c->value[k] / ply_most(c->type) : (double)value)
-                     : value;
+        const double value = c->value[k] / ply_most(c->type), within = value > 0.0 ? (value < 1.0 ? value : 1.0) : 0.0;
+        out[k] = (float)(encoded ? srgb_linear(within) : within);
     }
 }
 
