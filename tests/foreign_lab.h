@@ -94,7 +94,8 @@ static inline void put_3mf(const char *unit, const char *resources, const char *
     assert_non_null(archive);
     (void)snprintf(model_text, sizeof model_text,
                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model %s xmlns=\"http://schemas.microsoft.com/3dmanufacturing/"
-                   "core/2015/02\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"><resources>%s"
+                   "core/2015/02\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">"
+                   "<metadata name=\"SourceAsset_Format\">Collada Importer</metadata><resources>%s"
                    "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"10\" y=\"0\" "
                    "z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"10\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"%s/>"
                    "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>",

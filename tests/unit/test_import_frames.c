@@ -157,6 +157,7 @@ static void files_of_amf_are_in_their_unit(void **state) {
     import_good(FILE_OF("t.amf"), &m);
     box_is(&m, 0, 0, 0, 0.0254, 0.0254, 0);
     frame_is(&m, 0.0254, FRAME_Y, FRAME_BY_FILE, FRAME_BY_NOBODY);
+    assert_true(m.materials[0].albedo[0] >= 0.6f); /* no colour is none, not black */
     model_free(&m);
     (void)snprintf(text, sizeof text, amf, "");
     put(FILE_OF("t.amf"), text);

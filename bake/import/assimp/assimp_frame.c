@@ -21,7 +21,18 @@ static const struct aiMetadataEntry *entry(const assimp_scene *a, const char *ke
     return NULL;
 }
 
+/* The suffix goes first: the name that Assimp notes may come from the file (3MF that Assimp has written holds that of the
+ * reader of the file before). */
 const char *assimp_reader(const assimp_scene *a) {
+    static const char *const by_suffix[][2] = {{".fbx", "Autodesk FBX"},  {".dae", "Collada"},
+                                               {".3mf", "3mf"},           {".amf", "Additive manufacturing"},
+                                               {".3ds", "Discreet 3DS"},  {".ase", "ASE"},
+                                               {".ask", "ASE"},           {".dxf", "Drawing Interchange"},
+                                               {".x3d", "Extensible 3D"}, {".x3db", "Extensible 3D"},
+                                               {".gltf", "glTF"},         {".glb", "glTF"}};
+    for (size_t i = 0; i < sizeof by_suffix / sizeof *by_suffix; i++)
+        if (import_has_suffix(a->im->file, by_suffix[i][0]))
+            return by_suffix[i][1];
     const struct aiMetadataEntry *e = entry(a, "SourceAsset_Format");
     return e && e->mType == AI_AISTRING ? ((const struct aiString *)e->mData)->data : "";
 }

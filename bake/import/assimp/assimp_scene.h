@@ -35,7 +35,7 @@ bool assimp_is_stray(const assimp_scene *a, unsigned mesh);
 
 /* assimp_frame.c: settles the file's unit and up axis, and the place in the world of what Assimp's root node stands in. */
 bool assimp_frame(assimp_scene *a, const scene_mesh *mesh, double place[12]);
-/* Assimp's name of the reader that read the file, "Collada Importer"; "" if it has none. */
+/* How Assimp's name of the reader that read the file begins, "Collada"; "" if it has none. */
 const char *assimp_reader(const assimp_scene *a);
 
 /* assimp_archive.c: metres a unit of a 3MF file, or of an AMF file that is no archive; the format's default, 0.001, where it
