@@ -8,6 +8,9 @@
  * the real player runs as a child. */
 #include "test_packs.h"
 #include "vitrine.h"
+#include "vitrine_pack.h"
+
+#include <stdbool.h>
 
 enum { AT_ONCE = 2 };          /* most of a run's time is PoCL's compiler, which has one thread */
 static tool_run runs[AT_ONCE]; /* too large for a stack */
@@ -65,34 +68,111 @@ static void assert_all_alike(const char *pack, const char *what, const variant *
  * not be taken. */
 #define METHOD(m) "POCL_WORK_GROUP_METHOD=" m " POCL_CACHE_DIR=" TEST_PACKS "/pocl-" m
 
-static const variant one_at_a_time[] = {
-    {"", ""},
-    {"POCL_MAX_PTHREAD_COUNT=1", ""},
-    {"POCL_MAX_PTHREAD_COUNT=2", ""},
-    {"", "--lanes 1"},
-    {"", "--lanes 8"},
-    {"", "--lanes 16"},
-    {"", "--group 1"},
-    {"", "--group 32"},
-    {"", "--group 256"},
-    {"POCL_DEVICES=basic", ""},
-    {"POCL_DEVICES=pthread", ""},
-    {METHOD("loops"), ""},
-    {METHOD("loopvec"), ""},
-    {"", "--device 0 --wide-divide"},
-    {"", "--device 0 --wide-divide --lanes 1"},
+/* Ways of OpenCL's beside the plain run. Its compiler makes each anew, which takes 3 to 8 s, so that a pack is played in those
+ * that are named with it, and each effect meets all three in one pack or another: every_effect_meets_every_way. `make matrix`
+ * has devices, threads and lanes in all their pairs. */
+enum { ONE_LANE = 1, EIGHT_LANES = 2, SIXTEEN_LANES = 4, ALL_LANES = 7, WAYS_OF_OPENCL = 3 };
+static const variant of_opencl[WAYS_OF_OPENCL] = {{"POCL_MAX_PTHREAD_COUNT=2", "--lanes 1 --group 256"},
+                                                  {"POCL_DEVICES=pthread", "--lanes 8 --group 1"},
+                                                  {"POCL_DEVICES=basic", "--lanes 16 --group 32"}};
+
+/* Ways that need no program but the plain run's. */
+static const variant compiled_already[] = {{"POCL_MAX_PTHREAD_COUNT=1", ""},
+                                           {"", "--device host --threads 3"},
+                                           {"", "--device host --threads 1 --lanes 1"},
+                                           {"", "--device host --threads 2 --lanes 8 --host-isa baseline"}};
+
+/* Played by one pack alone. */
+static const variant rare[] = {{"", ""},
+                               {"POCL_MAX_PTHREAD_COUNT=2", ""},
+                               {METHOD("loops"), ""},
+                               {METHOD("loopvec"), ""},
+                               {"", "--device 0 --wide-divide"},
+                               {"", "--device 0 --wide-divide --lanes 1"}};
+
+static const struct {
+    const char *pack;
+    unsigned ways; /* of OpenCL's */
+} played[] = {
+    {"list", ALL_LANES},
+    {"room", ALL_LANES},
+    {"live", ALL_LANES},
+    {"buckets", ONE_LANE},
+    {"normal-keys", ONE_LANE | SIXTEEN_LANES},
+    {"sparse", EIGHT_LANES},
+    {"sparse-buckets", SIXTEEN_LANES},
+    {"small-sparse", ONE_LANE},
+    {"zones", ONE_LANE},
+    {"zones-buckets", EIGHT_LANES},
+    {"zones-sparse-buckets", SIXTEEN_LANES},
+    {"basis", ONE_LANE},
+    {"basis-33x47", EIGHT_LANES},
+    {"basis-shine", SIXTEEN_LANES},
+    {"shine", ONE_LANE},
+    {"live-shine", EIGHT_LANES},
+    {"live-33x47", ONE_LANE},
+    {"mesh", 0},
+    {"raw", 0},
+    {"flattened", 0},
+    {"sparse-16", 0},
+    {"sparse-room", 0},
+    {"nearest", 0},
+    {"trilinear", 0},
+    {"small", 0},
+    {"zones-sparse", 0},
+    {"areas-alone", 0},
+    {"basis-still", 0},
+    {"basis-16", 0},
+    {"live-once", 0},
+    {"dark", 0},
+    {"atrium", 0},
 };
 
-/* The same settings, several at once: fewer runs that still hold each kind of lanes, groups, threads and devices. */
-static const variant together[] = {
-    {"POCL_MAX_PTHREAD_COUNT=1", ""},
-    {"POCL_MAX_PTHREAD_COUNT=2", "--lanes 1 --group 256"},
-    {"POCL_DEVICES=pthread", "--lanes 8 --group 1"},
-    {"POCL_DEVICES=basic", "--lanes 16 --group 32"},
-    {"", "--device host --threads 3"},
-    {"", "--device host --threads 1 --lanes 1"},
-    {"", "--device host --threads 2 --lanes 8 --host-isa baseline"},
-};
+static unsigned ways_of(const char *pack) {
+    for (size_t i = 0; i < COUNT(played); i++)
+        if (strcmp(played[i].pack, pack) == 0)
+            return played[i].ways;
+    fail_msg("no ways are named for '%s'", pack);
+    return 0;
+}
+
+/* In its own ways, as the table has them. */
+static void assert_pack_alike(const char *pack, const char *what) {
+    variant all[COUNT(compiled_already) + WAYS_OF_OPENCL];
+    size_t count = COUNT(compiled_already);
+    const unsigned ways = ways_of(pack);
+    memcpy(all, compiled_already, sizeof compiled_already);
+    for (int i = 0; i < WAYS_OF_OPENCL; i++)
+        if (ways >> i & 1)
+            all[count++] = of_opencl[i];
+    assert_all_alike(test_pack(pack), what, all, count);
+}
+
+/* Lines or two of a kernel that is played in all ways without them; caustics are photons, in a program that takes long to make.
+ */
+static const uint64_t in_few_ways = VIT_BIT(RAW_BUCKETS) | VIT_BIT(FLATTENED) | VIT_BIT(NEAREST) | VIT_BIT(TRILINEAR) |
+                                    VIT_BIT(SPARSE_16) | VIT_BIT(SMALL_SAMPLES) | VIT_BIT(AREA) | VIT_BIT(CAUSTICS);
+
+static void every_effect_meets_every_way(void **state) {
+    uint64_t met[WAYS_OF_OPENCL] = {0}, all = 0;
+    (void)state;
+    for (size_t i = 0; i < COUNT(played); i++) {
+        vit_requirements need;
+        vit_text why = {""};
+        size_t size;
+        void *bytes = read_file(test_pack(played[i].pack), &size);
+        if (vit_require(&(vit_open_info){.pack = bytes, .pack_size = size}, &need, &why) != VIT_OK)
+            fail_msg("%s: %s", played[i].pack, why.text);
+        free(bytes);
+        all |= need.effects;
+        for (int k = 0; k < WAYS_OF_OPENCL; k++)
+            met[k] |= played[i].ways >> k & 1 ? need.effects : 0;
+    }
+    for (int k = 0; k < WAYS_OF_OPENCL; k++)
+        if (all & ~in_few_ways & ~met[k])
+            fail_msg("no pack with the effects %llx is played with '%s'", (unsigned long long)(all & ~in_few_ways & ~met[k]),
+                     of_opencl[k].options);
+}
 
 /* The device host: each number of threads, lanes, set of instructions that this machine has. */
 static const variant on_host[] = {
@@ -103,22 +183,6 @@ static const variant on_host[] = {
     {"", "--device host --threads 2 --lanes 1 --host-isa baseline"},
     {"", "--device host --threads 1 --lanes 8 --host-isa baseline"},
     {"", "--device host --threads 2 --lanes 16 --host-isa baseline"},
-};
-
-/* For what differs little from a pack that is played in all ways. */
-static const variant few[] = {
-    {"POCL_MAX_PTHREAD_COUNT=1", ""},
-    {"POCL_DEVICES=basic", "--lanes 1 --group 256"},
-    {"", "--device host --threads 1"},
-    {"", "--device host --threads 3 --lanes 1"},
-};
-
-/* The same without another program for PoCL to compile, which takes seconds: for packs whose kernels others are played by at
- * another width, all but a texture's filter or a like detail. */
-static const variant fewest[] = {
-    {"POCL_MAX_PTHREAD_COUNT=1", ""},
-    {"", "--device host --threads 1"},
-    {"", "--device host --threads 3 --lanes 1"},
 };
 
 static void the_device_host_gives_the_bits_of_opencl(void **state) {
@@ -140,44 +204,45 @@ static void make_caches(void) {
 static void a_frame_hashes_the_same_however_it_is_played(void **state) {
     (void)state;
     make_caches();
-    assert_all_alike(test_pack("list"), "--verify --hash", one_at_a_time, COUNT(one_at_a_time));
+    assert_pack_alike("list", "--verify --hash");
+    assert_all_alike(test_pack("list"), "--verify --hash", rare, COUNT(rare));
 }
 
-#define ALIKE(name, pack, ways)                                                                                                \
+#define ALIKE(name, pack)                                                                                                      \
     static void name(void **state) {                                                                                           \
         (void)state;                                                                                                           \
-        assert_all_alike(test_pack(pack), "--verify --hash", ways, COUNT(ways));                                               \
+        assert_pack_alike(pack, "--verify --hash");                                                                            \
     }
-ALIKE(buckets_hash_the_same, "buckets", few)
-ALIKE(raw_buckets_hash_the_same, "raw", fewest)
-ALIKE(flattened_photons_hash_the_same, "flattened", fewest)
-ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys", few)
-ALIKE(interpolated_light_hashes_the_same, "sparse", few)
-ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets", together)
-ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16", fewest)
-ALIKE(nearest_texels_hash_the_same, "nearest", fewest)
-ALIKE(trilinear_textures_hash_the_same, "trilinear", fewest)
-ALIKE(small_samples_hash_the_same, "small", fewest)
-ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse", few)
-ALIKE(zones_areas_and_sequence_hash_the_same, "zones", few)
-ALIKE(zones_in_buckets_hash_the_same, "zones-buckets", together)
-ALIKE(zones_at_few_samples_hash_the_same, "zones-sparse", fewest)
-ALIKE(zones_in_buckets_at_few_samples_hash_the_same, "zones-sparse-buckets", few)
-ALIKE(areas_alone_hash_the_same, "areas-alone", fewest)
-ALIKE(baked_irradiance_of_a_light_that_moves_hashes_the_same, "basis", together)
-ALIKE(baked_irradiance_of_still_light_hashes_the_same, "basis-still", fewest)
-ALIKE(baked_irradiance_in_small_tiles_hashes_the_same, "basis-16", fewest)
-ALIKE(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same, "basis-33x47", few)
-ALIKE(live_radiosity_hashes_the_same, "live", together)
-ALIKE(live_radiosity_of_one_reflection_hashes_the_same, "live-once", fewest)
-ALIKE(live_radiosity_by_bc1_hashes_the_same, "live-33x47", few)
-ALIKE(live_radiosity_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "live-shine", together)
-ALIKE(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "basis-shine", together)
-ALIKE(frames_without_photons_hash_the_same, "dark", fewest)
-ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room", together)
-ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh", few)
-ALIKE(a_large_scene_hashes_the_same, "atrium", fewest)
-ALIKE(mirrors_glass_gloss_soft_light_and_several_samples_a_pixel_hash_the_same, "shine", few)
+ALIKE(buckets_hash_the_same, "buckets")
+ALIKE(raw_buckets_hash_the_same, "raw")
+ALIKE(flattened_photons_hash_the_same, "flattened")
+ALIKE(keys_with_normals_and_small_tiles_hash_the_same, "normal-keys")
+ALIKE(interpolated_light_hashes_the_same, "sparse")
+ALIKE(interpolated_buckets_hash_the_same, "sparse-buckets")
+ALIKE(one_sample_in_16_and_small_tiles_hash_the_same, "sparse-16")
+ALIKE(nearest_texels_hash_the_same, "nearest")
+ALIKE(trilinear_textures_hash_the_same, "trilinear")
+ALIKE(small_samples_hash_the_same, "small")
+ALIKE(small_samples_with_interpolated_light_hash_the_same, "small-sparse")
+ALIKE(zones_areas_and_sequence_hash_the_same, "zones")
+ALIKE(zones_in_buckets_hash_the_same, "zones-buckets")
+ALIKE(zones_at_few_samples_hash_the_same, "zones-sparse")
+ALIKE(zones_in_buckets_at_few_samples_hash_the_same, "zones-sparse-buckets")
+ALIKE(areas_alone_hash_the_same, "areas-alone")
+ALIKE(baked_irradiance_of_a_light_that_moves_hashes_the_same, "basis")
+ALIKE(baked_irradiance_of_still_light_hashes_the_same, "basis-still")
+ALIKE(baked_irradiance_in_small_tiles_hashes_the_same, "basis-16")
+ALIKE(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same, "basis-33x47")
+ALIKE(live_radiosity_hashes_the_same, "live")
+ALIKE(live_radiosity_of_one_reflection_hashes_the_same, "live-once")
+ALIKE(live_radiosity_by_bc1_hashes_the_same, "live-33x47")
+ALIKE(live_radiosity_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "live-shine")
+ALIKE(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "basis-shine")
+ALIKE(frames_without_photons_hash_the_same, "dark")
+ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room")
+ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh")
+ALIKE(a_large_scene_hashes_the_same, "atrium")
+ALIKE(mirrors_glass_gloss_soft_light_and_several_samples_a_pixel_hash_the_same, "shine")
 
 static void a_frame_hashes_the_same_in_any_order(void **state) {
     (void)state;
@@ -204,62 +269,62 @@ static void frames_of_a_path_differ_from_each_other(void **state) {
 
 static void every_buffer_is_the_same_after_every_pass(void **state) {
     (void)state;
-    assert_all_alike(test_pack("list"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("buckets"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("normal-keys"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("room"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("small-sparse"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("sparse-room"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("sparse-buckets"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("zones"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("zones-buckets"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("mesh"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("shine"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("basis"), "--trace", few, COUNT(few));
-    assert_all_alike(test_pack("live"), "--trace", few, COUNT(few));
+    static const char *const packs[] = {"list",        "buckets",        "normal-keys", "room",          "small-sparse",
+                                        "sparse-room", "sparse-buckets", "zones",       "zones-buckets", "mesh",
+                                        "shine",       "basis",          "live"};
+    for (size_t i = 0; i < COUNT(packs); i++)
+        assert_pack_alike(packs[i], "--trace");
 }
 
-/* Every format at every width by the device host; OpenCL's compiler makes each pair anew, so that there each width has one
- * format of the three beside the plain run's, for the packs whose effects others have been compiled for. */
+/* Every format and size at every width by the device host. In OpenCL's ways the size of which neither edge is whole tiles, a
+ * way each of the others, and the formats, which are one kernel's, without photons, whose programs are quick to make. */
+static const char *const other_formats[] = {"--hash --format rgb565", "--hash --format rgba32f"};
+static const variant of_host[] = {
+    {"", "--device host --lanes 1"}, {"", "--device host --lanes 8"}, {"", "--device host --lanes 16"}};
+
 static void every_format_and_odd_size_is_the_same_at_every_width(void **state) {
     (void)state;
     static const char *const packs[] = {"list", "1x1", "17x1", "33x47", "sparse-17x1"};
-    static const struct {
-        const char *what;
-        variant opencl; /* a width of OpenCL's */
-    } formats[] = {{"--verify --hash", {"", "--lanes 1"}},
-                   {"--verify --hash --format rgb565", {"", "--lanes 8"}},
-                   {"--verify --hash --format rgba32f", {"", "--lanes 16"}}};
-    for (size_t i = 0; i < COUNT(packs); i++)
-        for (size_t f = 0; f < COUNT(formats); f++) {
-            const variant ways[] = {{"", "--device host --lanes 1"},
-                                    {"", "--device host --lanes 8"},
-                                    {"", "--device host --lanes 16"},
-                                    formats[f].opencl};
-            assert_all_alike(test_pack(packs[i]), formats[f].what, ways, COUNT(ways));
+    for (size_t i = 0; i < COUNT(packs); i++) {
+        assert_all_alike(test_pack(packs[i]), "--verify --hash", of_host, COUNT(of_host));
+        for (size_t f = 0; f < COUNT(other_formats); f++) {
+            char what[64];
+            (void)snprintf(what, sizeof what, "--verify %s --device host", other_formats[f]);
+            assert_all_alike(test_pack(packs[i]), what, of_host, COUNT(of_host));
         }
+    }
+    assert_all_alike(test_pack("33x47"), "--verify --hash", of_opencl, WAYS_OF_OPENCL);
+    assert_all_alike(test_pack("1x1"), "--verify --hash", of_opencl, 1);
+    assert_all_alike(test_pack("17x1"), "--verify --hash", of_opencl + 1, 1);
+    for (size_t f = 0; f < COUNT(other_formats); f++)
+        assert_all_alike(test_pack("dark"), other_formats[f], of_opencl, WAYS_OF_OPENCL);
 }
 
+/* Those that show nothing of photons by OpenCL without photons, too. */
 static void every_view_is_the_same_at_every_width(void **state) {
     (void)state;
-    static const char *const views[] = {
-#define X(name, light, meaning) #name,
+    static const struct {
+        const char *name;
+        bool of_photons;
+    } views[] = {
+#define X(name, light, meaning)                                                                                                \
+    {#name, (light)&VIT_SHOWS_INDIRECT || VIT_VIEW_##name == VIT_VIEW_clusters || VIT_VIEW_##name == VIT_VIEW_heat},
         VIT_VIEWS(X)
 #undef X
     };
-    static const variant lanes[] = {{"POCL_MAX_PTHREAD_COUNT=1", ""},
-                                    {"", "--device host --lanes 1"},
-                                    {"", "--device host --lanes 8"},
-                                    {"", "--device host --lanes 16"}};
     for (size_t i = 0; i < COUNT(views); i++) {
         char what[64];
-        (void)snprintf(what, sizeof what, "--hash --view %s", views[i]);
-        assert_all_alike(test_pack("33x47"), what, lanes, COUNT(lanes));
+        (void)snprintf(what, sizeof what, "--hash --view %s%s", views[i].name, views[i].of_photons ? "" : " --device host");
+        assert_all_alike(test_pack("33x47"), what, of_host, COUNT(of_host));
+        (void)snprintf(what, sizeof what, "--hash --view %s", views[i].name);
+        if (!views[i].of_photons)
+            assert_all_alike(test_pack("dark"), what, of_host, COUNT(of_host));
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_effect_meets_every_way),
         cmocka_unit_test(a_frame_hashes_the_same_however_it_is_played),
         cmocka_unit_test(the_device_host_gives_the_bits_of_opencl),
         cmocka_unit_test(buckets_hash_the_same),
