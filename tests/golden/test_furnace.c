@@ -81,7 +81,7 @@ static int set_up(void **state) {
     (void)fclose(f);
     static const double centre[3] = {0, 0, 0};
     write_box(&lab, "half");
-    write_sphere(&lab, 32);
+    write_sphere(&lab, 16);
     write_scene(&lab, "box.cfg", "box.obj", eye, false);
     write_scene(&lab, "box_moving.cfg", "box.obj", eye, true);
     write_scene(&lab, "sphere.cfg", "sphere.obj", centre, false);
@@ -237,13 +237,6 @@ static void walls_that_emit_light_one_another(void **state) {
     assert_true(fabs(whole - 1) < LIST_WITHIN);
 }
 
-/* Raw buckets weigh photons by 2 cos, which is 4/3 where light comes from all over the hemisphere; a flattened kernel
- * leaves out what lies round the corner. Neither is held to the truth. */
-static void raw_buckets_and_the_flattened_kernel_are_only_reported(void **state) {
-    (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --estimate buckets --smoothing raw");
-    (void)box_ratio(*state, "box.cfg", "--photons 65536 --radius 0.25 --kernel flattened");
-}
-
 #define STRIPS "--indirect-samples 1 --photons 65536 --radius 0.25 "
 #define ALL_AREAS "--zones 1 --effective-area 1"
 static bool agree(strips a, strips b, double middle, double edges) {
@@ -263,7 +256,6 @@ static void effective_areas_mend_edges(void **state) {
     assert_false(agree(box_strips(*state, STRIPS "--zones 0 --effective-area 0", 0.25), truth, 0.01, 0.08));
     assert_true(agree(box_strips(*state, STRIPS ALL_AREAS, 0.25), truth, 0.01, 0.03));
     assert_true(agree(box_strips(*state, STRIPS "--zones 0 --effective-area 1", 0.25), truth, 0.01, 0.06));
-    (void)box_strips(*state, STRIPS ALL_AREAS " --estimate buckets", 0.25);
 }
 
 static void effective_areas_keep_the_light(void **state) {
@@ -282,7 +274,6 @@ int main(void) {
         cmocka_unit_test(walls_that_emit_light_one_another),
         cmocka_unit_test(effective_areas_mend_edges),
         cmocka_unit_test(effective_areas_keep_the_light),
-        cmocka_unit_test(raw_buckets_and_the_flattened_kernel_are_only_reported),
     };
     return cmocka_run_group_tests_name("furnace", tests, set_up, scene_lab_tear_down);
 }
