@@ -252,8 +252,8 @@ static void ways_of_making_indirect_light_are_compared(void **state) {
     static const char stated[] = "indirect = \"photons\"; ";
     const char *block = strstr(scene_text, stated);
     (void)state;
-    (void)snprintf(with, sizeof with, "%.*sindirect = \"basis\"; receiver_rays = 64; %s", (int)(block - scene_text), scene_text,
-                   block + strlen(stated));
+    (void)snprintf(with, sizeof with, "%.*sindirect = \"basis\"; receiver_rays = 64; receiver_spacing = 24.0; %s",
+                   (int)(block - scene_text), scene_text, block + strlen(stated));
     put(TEST_PACKS "/room-basis.cfg", with);
     free(scene_text);
     tool(&run, TOOL_COST " " TEST_PACKS "/room-basis.cfg --size 48x32 --knobs indirect,photons,tile --settings 9 --repeats 7 "

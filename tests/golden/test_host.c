@@ -65,9 +65,9 @@ static void options_of_host_want_host_to_play(void **state) {
 static void the_baker_makes_the_same_bytes_with_opencl_and_without(void **state) {
     static const char *const ways[][2] = {{"", "--device 0"}, {NO_OPENCL, ""}};
     (void)state;
-    const size_t i = test_packs_find("33x47");
+    const size_t i = test_packs_find("room");
     size_t size[2];
-    void *host = read_file(test_pack("33x47"), &size[0]);
+    void *host = read_file(test_pack("room"), &size[0]);
     for (size_t k = 0; k < sizeof ways / sizeof ways[0]; k++) {
         tool(&r, "%s" TOOL_BAKE " %s -o " TEST_PACKS "/host.vit --quiet --no-check --threads 3 %s %s", ways[k][0],
              test_packs[i].input, ways[k][1], test_packs[i].options);
