@@ -48,10 +48,11 @@ $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 	@mkdir -p $(B)/scenes
 	$(B)/make-scenes bake/scenes $(B)/scenes
 
-# Tests run side by side, each with its output in one piece; those that take longest first, so that none is left to run alone.
+# Tests run side by side, each with its output in one piece; those that take longest first, so that none is left to run alone. What test_same_bits
+# has PoCL compile is there for those that come late.
 JOBS ?= $(shell nproc)
 SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
-LONGEST := $(patsubst %,$(B)/tests/golden/test_%,effects furnace bounds cost bake_twice same_bits work_counts) $(B)/tests/unit/test_zones
+LONGEST := $(patsubst %,$(B)/tests/golden/test_%,same_bits pipeline furnace) $(B)/tests/unit/test_zones $(patsubst %,$(B)/tests/golden/test_%,baked_light odd_files dark_scenes cost bake_twice convergence indirect_auto auto effects bounds)
 RUNS := $(addprefix run/,$(filter $(TEST_PROGRAMS),$(LONGEST)) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
 .PHONY: matrix numeric run-tests run-bench build-sanitized
 # What became of each test is written down here; a run of `make test` that is stopped, or cannot build, comes to no total.
