@@ -78,9 +78,11 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
                                   global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p,
                                   volatile global uint *looked_up) {
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
-    lu kind = l_gather_u(cells, at.index * 4 + 3);
-    li divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
-    if (l_any(divided)) {
+    for (int level = 0; level < VIT_RECEIVER_LEVELS; level++) {
+        lu kind = l_gather_u(cells, at.index * 4 + 3);
+        li divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
+        if (!l_any(divided))
+            break;
         cell_place within =
             cell_among(L_AS_INT(l_gather_u(cells, divided & (at.index * 4))), L_AS_INT(kind & 255u), at.w1, at.w2);
         at.index = l_sel_i(divided, within.index, at.index);

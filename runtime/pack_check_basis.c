@@ -10,38 +10,58 @@ static vit_status check_receivers(const vit_scene *s, const vit_u32 receiver[3],
     return VIT_OK;
 }
 
-/* Cells of a divided one lie behind all that are divided, so that none of them is. */
-static vit_status check_divided(const vit_scene *s, const vit_receiver_cell *c, vit_u32 i, vit_u32 last, vit_text *why) {
+/* The least cell that a divided one from `first` on has; `end`: none is divided. */
+static vit_u32 least_part(const vit_receiver_cell *cells, vit_u32 first, vit_u32 end) {
+    vit_u32 least = end;
+    for (vit_u32 i = first; i < end; i++) {
+        const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
+        if (VIT_RECEIVER_IS_DIVIDED(c->split) && c->receiver[0] < least)
+            least = c->receiver[0];
+    }
+    return least;
+}
+
+/* Its cells must be those from `first` on and before `end`. */
+static vit_status check_divided(const vit_receiver_cell *c, vit_u32 i, vit_u32 first, vit_u32 end, vit_text *why) {
     const vit_u32 parts = c->split & ~VIT_RECEIVER_DIVIDED;
     if (parts < 1 || parts > VIT_RECEIVER_PARTS)
         return vit_pack_refuse(why, "section RCEL: record %u: %u parts, expected 1..%u", i, parts, VIT_RECEIVER_PARTS);
-    if (c->receiver[0] <= last || (uint64_t)c->receiver[0] + (uint64_t)parts * parts > s->receiver_cells)
-        return vit_pack_refuse(why, "section RCEL: record %u: its cells must be behind record %u and before %u", i, last,
-                               s->receiver_cells);
+    if (c->receiver[0] <= i || c->receiver[0] < first || (uint64_t)c->receiver[0] + (uint64_t)parts * parts > end)
+        return vit_pack_refuse(why, "section RCEL: record %u: its cells must be among those from record %u on and before %u", i,
+                               first, end);
     if (c->receiver[1] != 0 || c->receiver[2] != 0)
         return vit_pack_refuse(why, "section RCEL: record %u: padding is not 0", i);
     return VIT_OK;
 }
 
+static vit_status check_cell(const vit_scene *s, const vit_receiver_cell *c, vit_u32 i, vit_text *why) {
+    const vit_status status = check_receivers(s, c->receiver, "RCEL", i, why);
+    if (status == VIT_OK && c->split != VIT_NONE && c->split >= s->receiver_splits)
+        return vit_pack_refuse(why, "section RCEL: record %u: split %u of %u", i, c->split, s->receiver_splits);
+    return status;
+}
+
+/* Level after level: cells of those that are divided lie in the next, and after the last none is. */
 vit_status vit_pack_check_RCEL(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
     const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
-    vit_u32 last = 0;
-    for (vit_u32 i = 0; i < s->receiver_cells; i++)
-        last = VIT_RECEIVER_IS_DIVIDED(VIT_RECORD(vit_receiver_cell, cells, i)->split) ? i : last;
-    for (vit_u32 i = 0; i < s->receiver_cells; i++) {
-        const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
-        if (VIT_RECEIVER_IS_DIVIDED(c->split)) {
-            const vit_status status = check_divided(s, c, i, last, why);
+    const vit_u32 count = s->receiver_cells;
+    vit_u32 first = 0;
+    for (int level = 0; first < count; level++) {
+        const vit_u32 next = least_part(cells, first, count), end = least_part(cells, next, count);
+        for (vit_u32 i = first; i < next; i++) {
+            const vit_receiver_cell *c = VIT_RECORD(vit_receiver_cell, cells, i);
+            const bool divided = VIT_RECEIVER_IS_DIVIDED(c->split);
+            if (divided && level >= VIT_RECEIVER_LEVELS)
+                return vit_pack_refuse(why, "section RCEL: record %u: divided more than %d times", i, VIT_RECEIVER_LEVELS);
+            const vit_status status = divided ? check_divided(c, i, next, end, why) : check_cell(s, c, i, why);
             if (status != VIT_OK)
                 return status;
-            continue;
         }
-        const vit_status status = check_receivers(s, c->receiver, "RCEL", i, why);
-        if (status != VIT_OK)
-            return status;
-        if (c->split != VIT_NONE && c->split >= s->receiver_splits)
-            return vit_pack_refuse(why, "section RCEL: record %u: split %u of %u", i, c->split, s->receiver_splits);
+        if (next <= first)
+            return vit_pack_refuse(why, "section RCEL: a divided cell's cells begin at record %u, expected behind %u", next,
+                                   first);
+        first = next;
     }
     return VIT_OK;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LEAST_RECEIVERS 4096u  /* unless their spacing is stated */
 #define ALL_REFLECTIONS 1024.0 /* as many times direct light as all of them together can be: transfer_matrix_make() */
 
 /* Sources that stay as they are, and lights that do not. */
@@ -171,6 +172,7 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .size = (double)out->plan.sky_radius,
                       .reflections = out->plan.reflections,
                       .spacing = b->scene.quality.receiver_spacing,
+                      .least = b->scene.quality_kept & SETTING_BIT(receiver_spacing) ? 0 : LEAST_RECEIVERS,
                       .error = b->scene.quality.basis_error,
                       .receiver_rays = (uint32_t)b->scene.quality.receiver_rays,
                       .within = c->copies > 1,

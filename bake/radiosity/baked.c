@@ -11,7 +11,7 @@
 #define CELLS_MOST 65536u
 #define BOUNCE_RAYS 128u /* per cell, about */
 #define FEWER 4u         /* rays and cells of the first look, which tells where receivers must be near each other */
-#define FIRST_LOOK 0.15  /* share of the time, about */
+#define FIRST_LOOK 0.13  /* share of the time, about, of each look that tells where receivers must be near each other */
 #define LIVE_STATES 64u  /* of all lights that are live, at which the first look asks for their light, about */
 
 /* States of the lights: what stays first, then each moving light at its knots, with an intensity of 1. */
@@ -134,16 +134,18 @@ typedef struct finding {
     const baked_input *in;
     const states *states;
     transport_report report;
+    int looks; /* of VIT_RECEIVER_LEVELS, that are over or under way */
 } finding;
 
 static void first_step(void *user, double done) {
     const finding *f = user;
-    f->in->progress(f->in->user, done * FIRST_LOOK);
+    f->in->progress(f->in->user, (f->looks - 1 + done) * FIRST_LOOK);
 }
 
 static void second_step(void *user, double done) {
     const finding *f = user;
-    f->in->progress(f->in->user, FIRST_LOOK + done * (1.0 - FIRST_LOOK));
+    const double looks = FIRST_LOOK * VIT_RECEIVER_LEVELS;
+    f->in->progress(f->in->user, looks + done * (1.0 - looks));
 }
 
 /* Light of the records: records x columns. Without lights there is none. fewer: by how much rays and cells are fewer. */
@@ -196,7 +198,9 @@ static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, float
 
 /* receivers_input.look */
 static vit_status look_first(void *user, const receivers *r, float *irradiance, vit_text *why) {
-    return find_all(user, r, FEWER, irradiance, why);
+    finding *f = user;
+    f->looks++;
+    return find_all(f, r, FEWER, irradiance, why);
 }
 
 static vit_status look_again(finding *f, baked *out, vit_text *why) {
@@ -233,6 +237,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .size = (float)in->size,
                                    .within = in->within,
                                    .spacing = (float)in->spacing,
+                                   .least = in->least,
                                    .most = MOST_RECEIVERS,
                                    .records = MOST_RECORDS,
                                    .threads = in->threads,

@@ -1,20 +1,20 @@
-/* Cells within which light changes much are divided once more: by how much it differs between their corners, at a first look,
- * against what there is. Where a neighbour is divided less often, what lies on the common edge takes the neighbour's light, as
- * hanging nodes of finite elements do. */
+/* Cells within which light changes much are divided once more, and so are their parts: by how much it differs between corners,
+ * at a first look, against what there is. Where a neighbour is divided less often, what lies on the common edge takes the
+ * neighbour's light, as hanging nodes of finite elements do. */
 #include "radiosity/receivers_parts.h"
 #include <stdlib.h>
 #include <string.h>
 
-#define STEP 0.4f      /* of the light at the corners of a part, over its mean */
-#define DIM 0.02f      /* of the mean of all: less counts as so much */
-#define MORE_STEP 1.3f /* where there would be too many */
-#define MORE 1u        /* receivers of parts, at most so many times the records of cells, */
-#define MORE_LEAST 16384u
+#define STEP 0.4f         /* of the light at the corners of a part, over its mean; half of that where parts are divided */
+#define DIM 0.02f         /* of the mean of all: less counts as so much */
+#define MORE_STEP 1.3f    /* where there would be too many */
+#define MORE 1u           /* receivers of parts, at most so many times the records of cells, */
+#define MORE_LEAST 16384u /* or so many; parts of parts, always */
 
-/* How much the light of a cell's corners differs, over its mean; all columns together. */
-static float contrast_of(const placing *p, uint32_t cell, const float *irradiance, double mean) {
+/* How much the light of a piece's corners differs, over its mean; all columns together. */
+static float contrast_of(const placing *p, uint32_t piece, const float *irradiance, double mean) {
     const uint32_t columns = p->in->columns;
-    const vit_u32 *r = p->out->cells[cell].receiver;
+    const vit_u32 *r = p->out->cells[piece].receiver;
     double differ = 0.0, sum = 0.0;
     for (uint32_t c = 0; c < columns; c++) {
         const float a = irradiance[(size_t)r[0] * columns + c], b = irradiance[(size_t)r[1] * columns + c],
@@ -35,10 +35,10 @@ static uint32_t parts_for(float contrast, float step) {
 /* The step by which they are not too many. */
 static float find_step(const placing *p, const float *contrast) {
     const uint32_t records = p->out->count - p->out->follower_count,
-                   most = records * MORE > MORE_LEAST ? records * MORE : MORE_LEAST;
-    for (float step = STEP;; step *= MORE_STEP) {
+                   most = records * MORE > MORE_LEAST && p->begin == 0 ? records * MORE : MORE_LEAST;
+    for (float step = p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
         uint64_t nodes = 0;
-        for (uint32_t i = 0; i < p->cells.count; i++) {
+        for (uint32_t i = 0; i < p->end - p->begin; i++) {
             const uint32_t n = parts_for(contrast[i], step);
             nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
         }
@@ -47,37 +47,53 @@ static float find_step(const placing *p, const float *contrast) {
     }
 }
 
-bool receivers_find_parts(placing *p, const float *irradiance) {
-    const uint32_t count = p->cells.count;
-    float *contrast = calloc(count + 1u, sizeof *contrast);
-    double mean = 0.0;
-    p->parts = malloc((count + 1u) * sizeof *p->parts);
-    p->first_part = malloc((count + 1u) * sizeof *p->first_part);
-    p->part_count = 0;
-    if (!contrast || !p->parts || !p->first_part) {
-        free(contrast);
+bool receivers_start_pieces(placing *p) {
+    p->pieces = malloc((p->cells.count + 1u) * sizeof *p->pieces);
+    for (uint32_t i = 0; p->pieces && i < p->cells.count; i++)
+        p->pieces[i] = (receiver_piece){.at = cells_corners(&p->cells, i), .side = p->cells.side_of[i], .finer = 1, .parts = 1};
+    p->piece_count = p->end = p->cells.count;
+    return p->pieces != NULL;
+}
+
+static bool add_parts(placing *p) {
+    uint64_t count = p->piece_count;
+    for (uint32_t i = p->begin; i < p->end; i++) {
+        const uint32_t parts = p->pieces[i].parts;
+        count += parts > 1 ? parts * parts : 0u;
+    }
+    receiver_piece *more = realloc(p->pieces, (count + 1u) * sizeof *more);
+    if (!more)
         return false;
+    p->pieces = more;
+    for (uint32_t i = p->begin; i < p->end; i++) {
+        receiver_piece *whole = p->pieces + i;
+        whole->first = p->piece_count;
+        for (uint32_t k = 0; k < whole->parts * whole->parts && whole->parts > 1; k++)
+            p->pieces[p->piece_count++] = (receiver_piece){.at = cells_within(&whole->at, whole->parts, k),
+                                                           .side = whole->side,
+                                                           .finer = whole->finer * whole->parts,
+                                                           .parts = 1};
     }
-    for (size_t i = 0; irradiance && i < (size_t)p->out->count * p->in->columns; i++)
+    return true;
+}
+
+bool receivers_find_parts(placing *p, const float *irradiance) {
+    float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
+    double mean = 0.0;
+    if (!contrast)
+        return false;
+    for (size_t i = 0; i < (size_t)p->out->count * p->in->columns; i++)
         mean += (double)irradiance[i] / p->out->count;
-    if (irradiance)
+    if (p->begin == 0)
         receivers_part_records(p, irradiance, mean);
-    for (uint32_t i = 0; irradiance && i < count; i++)
-        if (p->met[p->cells.side_of[i]] && p->looked_at[i])
-            contrast[i] = contrast_of(p, i, irradiance, mean);
+    for (uint32_t i = p->begin; i < p->end; i++)
+        if (p->met[p->pieces[i].side] && (p->begin > 0 || p->looked_at[i]))
+            contrast[i - p->begin] = contrast_of(p, i, irradiance, mean);
     const float step = find_step(p, contrast);
-    for (uint32_t i = 0; i < count; i++) {
-        const uint32_t parts = parts_for(contrast[i], step);
-        p->parts[i] = parts;
-        p->first_part[i] = p->part_count;
-        p->part_count += parts > 1 ? parts * parts : 0u;
-    }
+    for (uint32_t i = p->begin; i < p->end; i++)
+        p->pieces[i].parts = parts_for(contrast[i - p->begin], step);
     free(contrast);
-    p->whole = malloc((p->part_count + 1u) * sizeof *p->whole);
-    for (uint32_t i = 0; i < count && p->whole; i++)
-        for (uint32_t k = 0; k < p->parts[i] * p->parts[i] && p->parts[i] > 1; k++)
-            p->whole[p->first_part[i] + k] = i;
-    return p->whole != NULL;
+    return add_parts(p);
 }
 
 /* Slot of an edge, or the free one where it belongs. */
@@ -90,28 +106,46 @@ static uint32_t edge_slot(const placing *p, uint32_t a, uint32_t b) {
     return at;
 }
 
+/* An end that hangs may lie on a longer edge, and on an edge between two that carry something may hang: both stay straight. */
+static bool is_settled(const receiver *a, const receiver *b) {
+    return a->hangs || b->hangs || (a->carries && b->carries);
+}
+
 bool receivers_find_edges(placing *p) {
+    free(p->edges);
+    free(p->edge_parts);
     p->edge_slots = 1024;
-    while (p->edge_slots < 6u * p->cells.count && p->edge_slots < 1u << 30)
+    while (p->edge_slots < 6u * p->end && p->edge_slots < 1u << 30)
         p->edge_slots *= 2;
     p->edges = malloc(p->edge_slots * sizeof *p->edges);
     p->edge_parts = calloc(p->edge_slots, sizeof *p->edge_parts);
     if (!p->edges || !p->edge_parts)
         return false;
-    for (uint32_t i = 0; i < p->cells.count; i++) {
+    for (uint32_t i = 0; i < p->end; i++) {
+        const receiver_piece *piece = p->pieces + i;
         const vit_u32 *r = p->out->cells[i].receiver;
-        for (int k = 0; k < 3 && p->spacing[p->cells.side_of[i]] > 0.0f; k++) {
-            const uint32_t at = edge_slot(p, r[k], r[(k + 1) % 3]);
-            if (p->edge_parts[at] == 0 || p->edge_parts[at] > p->parts[i])
-                p->edge_parts[at] = (uint8_t)p->parts[i];
+        const bool gone = (i < p->begin && piece->parts > 1) || !(p->spacing[piece->side] > 0.0f);
+        for (int k = 0; k < 3 && !gone; k++) {
+            const uint32_t a = r[k], b = r[(k + 1) % 3], at = edge_slot(p, a, b);
+            const uint32_t parts = is_settled(p->out->receivers + a, p->out->receivers + b) ? 1 : piece->parts;
+            if (p->edge_parts[at] == 0 || p->edge_parts[at] > parts)
+                p->edge_parts[at] = (uint8_t)parts;
         }
     }
     return true;
 }
 
-static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight) {
+/* Of a cell that a wall parts, edges may have ends on its other side. */
+static bool lie_in_the_open(const placing *p, uint32_t a, uint32_t b, float lift) {
+    const receiver *from = p->out->receivers + a, *to = p->out->receivers + b;
+    return separation_sees(p->in->rays, receivers_lifted(p, from->side, from->b1, from->b2, lift),
+                           receivers_lifted(p, to->side, to->b1, to->b2, lift));
+}
+
+static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight, float lift) {
     receivers *o = p->out;
-    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].follows)
+    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].follows || o->receivers[on].carries ||
+        !lie_in_the_open(p, on, a, lift) || !lie_in_the_open(p, on, b, lift))
         return true;
     if (o->follower_count == p->follower_room) {
         const uint32_t room = p->follower_room ? 2 * p->follower_room : 1024;
@@ -121,15 +155,16 @@ static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight) 
         o->followers = more;
         p->follower_room = room;
     }
-    o->receivers[on].follows = true;
+    o->receivers[on].follows = o->receivers[on].hangs = true;
+    o->receivers[a].carries = o->receivers[b].carries = true;
     o->followers[o->follower_count++] = (receiver_follower){on, {a, b, a, a, a, a}, {1.0f - weight, weight}};
     return true;
 }
 
-bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES]) {
+bool receivers_hang(placing *p, uint32_t piece, uint32_t (*node)[RECEIVER_NODES]) {
     static const uint32_t corner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-    const uint32_t parts = p->parts[cell];
-    const vit_u32 *r = p->out->cells[cell].receiver;
+    const uint32_t parts = p->pieces[piece].parts;
+    const vit_u32 *r = p->out->cells[piece].receiver;
     bool fine = true;
     for (int e = 0; e < 3; e++) {
         const uint32_t *from = corner[e], *to = corner[(e + 1) % 3];
@@ -139,7 +174,8 @@ bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES])
             on[k] = node[from[0] * (parts - k) + to[0] * k][from[1] * (parts - k) + to[1] * k];
         for (uint32_t k = 1; k < parts && fine; k++) {
             const uint32_t low = k / step * step;
-            fine = k == low || hang(p, on[k], on[low], on[low + step], (float)(k - low) / (float)step);
+            fine = k == low || hang(p, on[k], on[low], on[low + step], (float)(k - low) / (float)step,
+                                    receivers_lift(p, p->pieces[piece].side, p->pieces[piece].finer * parts));
         }
     }
     return fine;

@@ -11,6 +11,7 @@
 #define REACH 0.5f       /* spacings: as near as that records say what light a receiver has */
 #define HARDLY_SEEN 3.0f /* spacings: corners of cells that no ray of a camera met share receivers as near as that */
 #define GROWTH 1.1f
+#define SHRINKS 0.25f
 #define ROUNDS 4       /* of growth, at most */
 #define UNSEEN_PART 8u /* of the receivers wanted at most, for sides that no ray met */
 
@@ -116,14 +117,15 @@ static uint64_t corner_key(const placing *p, const cornered *c, int corner) {
     return mixed(h, 1u);
 }
 
-static vec3 lifted(const placing *p, uint32_t side, float b1, float b2, float lift) {
+vec3 receivers_lifted(const placing *p, uint32_t side, float b1, float b2, float lift) {
     return vec3_along(side_place(p->in->geometry, side, b1, b2), side_face(p->in->geometry, side), lift);
 }
 
 /* Is there nothing right above the place, as something that is sunk into the surface? */
 static bool is_open(const placing *p, uint32_t side, float b1, float b2, float lift) {
     const float offset = p->in->rays->s->ray_offset;
-    return separation_sees(p->in->rays, lifted(p, side, b1, b2, offset), lifted(p, side, b1, b2, lift + offset));
+    return separation_sees(p->in->rays, receivers_lifted(p, side, b1, b2, offset),
+                           receivers_lifted(p, side, b1, b2, lift + offset));
 }
 
 /* The receiver of a corner: the one that is there already if it can be seen from the place, else a new one at the pulled-in
@@ -146,34 +148,28 @@ static uint32_t corner_receiver(placing *p, const cornered *c, int corner, const
         known = p->found[at];
     }
     const receiver *r = p->out->receivers + known;
-    if (!c->seen || !p->met[c->side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, c->lift)))
+    if (!c->seen || !p->met[c->side] || separation_sees(p->in->rays, from, receivers_lifted(p, r->side, r->b1, r->b2, c->lift)))
         return known;
     return new_receiver(p, c->side, in[0], in[1], c->reach);
 }
 
 /* 3. What stands on a cell. */
 
-static float lift_of(const placing *p, uint32_t side, uint32_t parts) {
+float receivers_lift(const placing *p, uint32_t side, uint32_t parts) {
     return separation_lift(p->in->rays, p->spacing[side] / (float)parts);
 }
 
 static bool parted_cell(void *user, uint32_t cell, separation_cell *out) {
     const placing *p = user;
     const uint32_t side = p->cells.side_of[cell];
-    *out = (separation_cell){side, cells_corners(&p->cells, cell), lift_of(p, side, 1)};
+    *out = (separation_cell){side, cells_corners(&p->cells, cell), receivers_lift(p, side, 1)};
     return p->met[side] && p->looked_at[cell];
-}
-
-static cell_corners part_corners(const placing *p, uint32_t part) {
-    const uint32_t cell = p->whole[part];
-    const cell_corners k = cells_corners(&p->cells, cell);
-    return cells_within(&k, p->parts[cell], part - p->first_part[cell]);
 }
 
 static bool parted_part(void *user, uint32_t part, separation_cell *out) {
     const placing *p = user;
-    const uint32_t cell = p->whole[part], side = p->cells.side_of[cell];
-    *out = (separation_cell){side, part_corners(p, part), lift_of(p, side, p->parts[cell])};
+    const receiver_piece *piece = p->pieces + p->end + part;
+    *out = (separation_cell){piece->side, piece->at, receivers_lift(p, piece->side, piece->finer)};
     return true;
 }
 
@@ -215,8 +211,8 @@ static void take_corners(placing *p, const cornered *c, uint32_t places, vit_u32
         float at[2] = {p->at[c->side][0], p->at[c->side][1]}; /* of an only cell the place that a camera sees */
         if (!c->seen || !c->only)
             place_for(p, c, i, places, at);
-        const vec3 from = lifted(p, c->side, at[0], at[1], c->lift);
-        if (!c->seen || (separation_sees(p->in->rays, from, lifted(p, c->side, in[0], in[1], c->lift)) &&
+        const vec3 from = receivers_lifted(p, c->side, at[0], at[1], c->lift);
+        if (!c->seen || (separation_sees(p->in->rays, from, receivers_lifted(p, c->side, in[0], in[1], c->lift)) &&
                          is_open(p, c->side, in[0], in[1], c->lift)))
             out[i] = corner_receiver(p, c, i, in, from);
         else
@@ -266,41 +262,41 @@ static bool take_cell(placing *p, const separations *s, uint32_t cell) {
                         .at = cells_corners(&p->cells, cell),
                         .weld = p->seen[side] ? weld : p->unseen,
                         .reach = p->seen[side] ? reach : p->unseen,
-                        .lift = lift_of(p, side, 1),
+                        .lift = receivers_lift(p, side, 1),
                         .seen = p->seen[side],
                         .only = p->cells.sides[side] >> VIT_SIDE_PARTS_SHIFT == 1};
     return take(p, &c, s, cell, p->out->cells + cell);
 }
 
-/* Parts have the cell's own receivers at its corners, and share those between them, and with neighbours' parts. */
-static bool take_parts(placing *p, const separations *s, uint32_t cell) {
-    const uint32_t parts = p->parts[cell], first = p->first_part[cell], side = p->cells.side_of[cell];
-    vit_receiver_cell *whole = p->out->cells + cell;
+/* Parts have the piece's own receivers at its corners, and share those between them, and with neighbours' parts. */
+static bool take_parts(placing *p, const separations *s, uint32_t piece) {
+    const receiver_piece *of = p->pieces + piece;
+    vit_receiver_cell *whole = p->out->cells + piece;
     uint32_t node[RECEIVER_NODES][RECEIVER_NODES], own[3];
     memset(node, 0xff, sizeof node);
     node[0][0] = whole->receiver[0];
-    node[parts][0] = whole->receiver[1];
-    node[0][parts] = whole->receiver[2];
-    cornered c = {.side = side,
-                  .weld = p->spacing[side] * (WELD / VIT_RECEIVER_PARTS),
-                  .lift = lift_of(p, side, parts),
+    node[of->parts][0] = whole->receiver[1];
+    node[0][of->parts] = whole->receiver[2];
+    cornered c = {.side = of->side,
+                  .weld = p->spacing[of->side] * (WELD / (float)(VIT_RECEIVER_PARTS * VIT_RECEIVER_PARTS)), /* at any level */
+                  .lift = receivers_lift(p, of->side, of->finer * of->parts),
                   .seen = true,
                   .own = own};
     bool fine = true;
-    for (uint32_t k = first; k < first + parts * parts && fine; k++) {
+    for (uint32_t k = 0; k < of->parts * of->parts && fine; k++) {
         uint32_t i[3], j[3];
-        vit_receiver_cell *out = p->out->cells + p->cells.count + k;
-        c.at = part_corners(p, k);
-        cells_nodes(parts, k - first, i, j);
+        vit_receiver_cell *out = p->out->cells + of->first + k;
+        c.at = p->pieces[of->first + k].at;
+        cells_nodes(of->parts, k, i, j);
         for (int n = 0; n < 3; n++)
             own[n] = node[i[n]][j[n]];
-        fine = take(p, &c, s, k, out);
+        fine = take(p, &c, s, of->first + k - p->end, out);
         for (int n = 0; n < 3; n++)
             if (node[i[n]][j[n]] == VIT_NONE)
                 node[i[n]][j[n]] = out->receiver[n];
     }
-    fine = fine && receivers_hang(p, cell, node);
-    *whole = (vit_receiver_cell){.receiver = {p->cells.count + first, 0, 0}, .split = VIT_RECEIVER_DIVIDED | parts};
+    fine = fine && receivers_hang(p, piece, node);
+    *whole = (vit_receiver_cell){.receiver = {of->first, 0, 0}, .split = VIT_RECEIVER_DIVIDED | of->parts};
     return fine;
 }
 
@@ -317,36 +313,38 @@ static bool take_cells(placing *p) {
     return fine;
 }
 
-static bool divide_cells(placing *p, const float *irradiance) {
+/* Of pieces that may be divided now those within which light changes much. */
+static bool divide_pieces(placing *p, const float *irradiance) {
     receivers *o = p->out;
     separations s = {0};
-    bool fine =
-        receivers_find_parts(p, irradiance) && receivers_find_edges(p) && find_parted(p, p->part_count, parted_part, &s);
-    vit_receiver_cell *more = fine ? realloc(o->cells, ((size_t)p->cells.count + p->part_count + 1u) * sizeof *more) : NULL;
+    bool fine = receivers_find_parts(p, irradiance) && receivers_find_edges(p) &&
+                find_parted(p, p->piece_count - p->end, parted_part, &s);
+    vit_receiver_cell *more = fine ? realloc(o->cells, (p->piece_count + 1u) * sizeof *more) : NULL;
     if (more)
         o->cells = more;
     fine = fine && more;
-    for (uint32_t i = 0; i < p->cells.count && fine; i++)
-        fine = p->parts[i] == 1 || take_parts(p, &s, i);
+    for (uint32_t i = p->begin; i < p->end && fine; i++)
+        fine = p->pieces[i].parts == 1 || take_parts(p, &s, i);
     separations_free(&s);
+    p->begin = p->end;
+    p->end = p->piece_count;
     return fine;
 }
 
-/* Light at a first look says which. */
+/* Light at a first look says which, at another which of their parts. */
 static vit_status divide(placing *p, vit_text *why) {
     const receivers_input *in = p->in;
-    float *irradiance = NULL;
     vit_status status = VIT_OK;
-    if (in->look && !receivers_find_records(p)) {
+    if (!receivers_start_pieces(p) || (in->look && !receivers_find_records(p)))
         status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
-    } else if (in->look) {
-        irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance);
+    for (int level = 0; level < VIT_RECEIVER_LEVELS && in->look && status == VIT_OK && p->begin < p->end; level++) {
+        float *irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance);
         status =
             irradiance ? in->look(in->user, p->out, irradiance, why) : bake_fail(why, VIT_FAILED, "receivers: out of memory");
+        if (status == VIT_OK && !divide_pieces(p, irradiance))
+            status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
+        free(irradiance);
     }
-    if (status == VIT_OK && !divide_cells(p, irradiance))
-        status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
-    free(irradiance);
     return status;
 }
 
@@ -362,12 +360,12 @@ static void drop_dark(placing *p) {
         for (uint32_t k = 0; !dark && k < parts * parts; k++)
             o->cells[o->cell_count++] = o->cells[first + k];
     }
-    const uint32_t dropped = p->cells.count - o->cell_count;
+    const uint32_t dropped = p->cells.count - o->cell_count, parts = p->piece_count - p->cells.count;
+    memmove(o->cells + o->cell_count, o->cells + p->cells.count, parts * sizeof *o->cells);
+    o->cell_count += parts;
     for (uint32_t i = 0; i < o->cell_count; i++)
         if (VIT_RECEIVER_IS_DIVIDED(o->cells[i].split))
             o->cells[i].receiver[0] -= dropped;
-    memmove(o->cells + o->cell_count, o->cells + p->cells.count, p->part_count * sizeof *o->cells);
-    o->cell_count += p->part_count;
 }
 
 /* What depends on the spacing. */
@@ -375,13 +373,12 @@ static void drop_cells(placing *p) {
     free(p->keys);
     free(p->found);
     free(p->looked_at);
-    free(p->parts);
-    free(p->first_part);
-    free(p->whole);
+    free(p->pieces);
     free(p->edges);
     free(p->edge_parts);
     p->keys = p->edges = NULL;
-    p->found = p->parts = p->first_part = p->whole = NULL;
+    p->found = NULL;
+    p->pieces = NULL;
     p->looked_at = NULL;
     p->edge_parts = NULL;
     p->slots = p->room = p->split_room = p->follower_room = 0;
@@ -397,7 +394,7 @@ static void start_anew(placing *p) {
     p->out->seen_sides = seen;
 }
 
-/* 4. As many as are wanted: the spacing grows until they are, or has grown often enough. */
+/* 4. As many as are wanted: the spacing shrinks once, or grows until they are, or has grown often enough. */
 static vit_status place_all(placing *p, vit_text *why) {
     const receivers_input *in = p->in;
     for (int round = 0;; round++) {
@@ -411,9 +408,12 @@ static vit_status place_all(placing *p, vit_text *why) {
             unseen += !p->seen[p->out->receivers[i].side];
         const uint32_t seen = p->out->count - unseen;
         const bool fewer_seen = seen > in->most, fewer_unseen = unseen > in->most / UNSEEN_PART;
-        if (!(fewer_seen || fewer_unseen) || round == ROUNDS)
+        const bool more_seen = round == 0 && seen < in->least;
+        if (!(fewer_seen || fewer_unseen || more_seen) || round == ROUNDS)
             return VIT_OK;
-        const float more = fewer_seen ? float_max(sqrtf((float)seen / (float)in->most) * 1.05f, GROWTH) : 1.0f;
+        const float more = fewer_seen  ? float_max(sqrtf((float)seen / (float)in->most) * 1.05f, GROWTH)
+                           : more_seen ? float_max(sqrtf((float)seen / (float)in->least), SHRINKS)
+                                       : 1.0f;
         p->unseen *= fewer_unseen ? 4.0f : 1.0f;
         for (uint32_t i = 0; i < 2 * in->rays->s->triangle_count; i++)
             if (p->spacing[i] > 0.0f)

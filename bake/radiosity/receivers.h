@@ -20,6 +20,7 @@ typedef struct receivers_input {
     float size;                     /* of the scene: radius of a sphere round it, m */
     float spacing;                  /* pixels between receivers where a camera comes nearest */
     bool within;                    /* samples are taken within pixels, not in their middles alone */
+    uint32_t least;                 /* receivers wanted at least: the spacing shrinks to no less than a quarter for them */
     uint32_t most;                  /* receivers wanted at most: the spacing grows until they are no more, or nearly so */
     uint32_t records;               /* whose light is computed for the first look, about: above that others follow them */
     unsigned threads;               /* 0: all cores; changes no byte */
@@ -35,6 +36,8 @@ typedef struct receiver {
     float b1, b2;
     float reach;  /* m: records as near as that say what its light is; 0: none does */
     bool follows; /* its light follows from that of others: of followers. Those whose does not are records. */
+    bool hangs;   /* on an edge that a neighbour divides less often, */
+    bool carries; /* or is an end of it, and stays what it is */
 } receiver;
 
 #define RECEIVER_FROM 6u

@@ -12,6 +12,15 @@ typedef struct receiver_sight {
     float wide; /* so far off another ray may be, m */
 } receiver_sight;
 
+/* A cell, or a part of one: cells first, then parts, level after level. */
+typedef struct receiver_piece {
+    cell_corners at;
+    uint32_t side;
+    uint32_t finer; /* so many along an edge of its cell: 1 for cells */
+    uint32_t parts; /* of it, along each edge; 1 where it is not divided */
+    uint32_t first; /* of its parts, a piece */
+} receiver_piece;
+
 typedef struct placing {
     const receivers_input *in;
     receivers *out;
@@ -24,14 +33,12 @@ typedef struct placing {
     receiver_sight *sights;
     size_t sight_count, sight_room;
     cells cells;
-    bool *looked_at; /* a cell: by the cameras, or none of its side's cells is */
-    /* receiver_parts.c: cells that are divided once more. */
-    uint32_t *parts;      /* a cell: along each edge, 1 where it is not */
-    uint32_t *first_part; /* a cell: its first part, among all cells' */
-    uint32_t *whole;      /* a part: the cell that it is of */
-    uint32_t part_count;
-    uint64_t *edges;     /* a hash table of cells' edges: their two receivers, the larger in the high half */
-    uint8_t *edge_parts; /* the fewest that a cell there is divided into; 0: no such edge */
+    bool *looked_at;        /* a cell: by the cameras, or none of its side's cells is */
+    receiver_piece *pieces; /* receiver_parts.c */
+    uint32_t piece_count;
+    uint32_t begin, end; /* pieces that may be divided now: what is before is divided already, or stays whole */
+    uint64_t *edges;     /* a hash table of pieces' edges: their two receivers, the larger in the high half */
+    uint8_t *edge_parts; /* the fewest that a piece there is divided into; 0: no such edge */
     uint32_t edge_slots; /* a power of two */
     uint32_t room, split_room, follower_room;
     uint64_t *keys; /* a hash table of welded corners */
@@ -40,20 +47,26 @@ typedef struct placing {
     bool failed;
 } placing;
 
+/* receivers.c: how far above a side places look at each other, where its cells' edges have so many parts, m; and such a place.
+ */
+float receivers_lift(const placing *p, uint32_t side, uint32_t parts);
+vec3 receivers_lifted(const placing *p, uint32_t side, float b1, float b2, float lift);
 /* receiver_spacing.c: `spacing`, `seen`, `met`, `at`, `sights`. False: out of memory. */
 bool receivers_find_spacing(placing *p);
 /* `looked_at`, once there are cells. */
 bool receivers_find_looked_at(placing *p);
-/* receiver_parts.c: `parts`, `first_part`, `whole`. irradiance: of the cells' receivers, or NULL. */
+/* receiver_parts.c: `pieces`, none of the cells divided yet. */
+bool receivers_start_pieces(placing *p);
+/* Parts of pieces from `begin` to `end`, behind all others. irradiance: of all receivers. */
 bool receivers_find_parts(placing *p, const float *irradiance);
 /* receiver_records.c: `followers` of the cells' receivers, of those that lie near records. */
 bool receivers_find_records(placing *p);
 /* Those whose records' light differs are records, too; mean: of the light of all, columns added up. */
 void receivers_part_records(placing *p, const float *irradiance, double mean);
-/* `edges`, once cells have receivers. */
+/* `edges`, once there are parts, which have no receivers yet. */
 bool receivers_find_edges(placing *p);
 #define RECEIVER_NODES (VIT_RECEIVER_PARTS + 1u)
-/* `followers` of a cell's parts, whose corner i, j has receiver node[i][j], or VIT_NONE. */
-bool receivers_hang(placing *p, uint32_t cell, uint32_t (*node)[RECEIVER_NODES]);
+/* `followers` of a piece's parts, whose corner i, j has receiver node[i][j], or VIT_NONE. */
+bool receivers_hang(placing *p, uint32_t piece, uint32_t (*node)[RECEIVER_NODES]);
 
 #endif

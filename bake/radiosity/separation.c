@@ -5,6 +5,8 @@
 #define NEAR_CORNER 0.98f /* of the way from the middle to a corner */
 #define EVEN 16u          /* places even over the cell; the last three are its corners */
 #define CANDIDATES 12u    /* planes that are tried, at most */
+#define LOOKS 4           /* ways in which a place looks for what is round it */
+#define INSIDE 3u         /* of these that end on backs: the place may be inside of a body */
 
 bool separation_sees(const photon_rays *rays, vec3 a, vec3 b) {
     const vec3 way = vec3_sub(b, a);
@@ -93,6 +95,32 @@ static void look_round(search *s, const separation_cell *c) {
             }
 }
 
+/* How many looks from a place end on the backs of triangles. */
+static uint32_t backs_seen(const search *s, const separation_cell *c, vec3 at) {
+    const vec3 face = side_face(s->g, c->side);
+    vec3 across, up;
+    uint32_t backs = 0;
+    vec3_across(face, &across, &up);
+    for (int i = 0; i < LOOKS; i++) {
+        const vec3 aside = vec3_scale(i & 1 ? up : across, i & 2 ? -1.0f : 1.0f), d = vec3_unit(vec3_along(face, aside, 1.0f));
+        float t;
+        const uint32_t triangle = photon_rays_nearest(s->rays, at, d, &t);
+        backs += triangle != VIT_NONE && vec3_dot(side_face(s->g, 2 * triangle), d) > 0.0f;
+    }
+    return backs;
+}
+
+/* Bits: places inside of a body that stands on the cell. They see backs alone, where others do not. */
+static uint32_t find_buried(const search *s, const separation_cell *c) {
+    uint32_t inside = 0, outside = 0;
+    for (uint32_t i = 0; i < SEPARATION_PLACES; i++) {
+        const uint32_t backs = backs_seen(s, c, s->at[i]);
+        inside |= backs >= INSIDE ? 1u << i : 0u;
+        outside |= backs <= LOOKS - INSIDE ? 1u << i : 0u;
+    }
+    return outside ? inside : 0;
+}
+
 /* Pairs in `hidden` of the places not alone: both ways. */
 static int pairs_between(const search *s, uint32_t from, uint32_t to, bool hidden) {
     int sum = 0;
@@ -102,8 +130,9 @@ static int pairs_between(const search *s, uint32_t from, uint32_t to, bool hidde
     return sum;
 }
 
-/* The plane between the places that parts most pairs that do not see each other, and fewest that do. False: none does. */
-static bool find_plane(const search *s, separation *out) {
+/* The plane between the places that parts most pairs of those in `among` that do not see each other, and fewest that do. False:
+ * none does. */
+static bool find_plane(const search *s, uint32_t among, separation *out) {
     int best = 0;
     for (uint32_t c = 0; c < s->planes; c++) {
         const vec3 n = side_face(s->g, 2 * s->triangle[c]);
@@ -112,7 +141,7 @@ static bool find_plane(const search *s, separation *out) {
         for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
             front |= vec3_dot(n, s->at[i]) > offset ? 1u << i : 0u;
         const uint32_t a = front, b = ~front & SEPARATION_EVERYWHERE;
-        const int score = pairs_between(s, a, b, true) - pairs_between(s, a, b, false);
+        const int score = pairs_between(s, a & among, b & among, true) - pairs_between(s, a & among, b & among, false);
         if (a && b && score > best) {
             best = score;
             *out = (separation){.normal = {n.x, n.y, n.z}, .offset = offset, .places = a};
@@ -137,9 +166,11 @@ static void find(void *user, uint32_t number) {
     if (!f->in->cell(f->in->user, number, &c) || looks_open(&s, &c))
         return;
     look_round(&s, &c);
+    f->alone[number] = find_buried(&s, &c);
     for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
         f->alone[number] |= (s.hidden[i] | 1u << i) == SEPARATION_EVERYWHERE ? 1u << i : 0u;
-    f->is[number] = find_plane(&s, f->found + number);
+    f->is[number] = find_plane(&s, SEPARATION_EVERYWHERE & ~f->alone[number], f->found + number) ||
+                    find_plane(&s, SEPARATION_EVERYWHERE, f->found + number);
 }
 
 bool separations_find(const separations_input *in, separations *out) {

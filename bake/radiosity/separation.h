@@ -33,7 +33,7 @@ typedef struct separations_input {
 
 typedef struct separations {
     uint32_t *of; /* a cell: what parts it, of `found`; VIT_NONE: all its places see each other, or no plane explains why not */
-    uint32_t *alone; /* a cell, bits: places that no other place sees, as inside of what stands there */
+    uint32_t *alone; /* a cell, bits: places inside of what stands there, or that no other place sees */
     separation *found;
     uint32_t count; /* of found */
 } separations;

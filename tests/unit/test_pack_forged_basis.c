@@ -52,10 +52,15 @@
     X(RCEL, no_parts, "record 3: 0 parts", divide(im, 3, 4, 0))                                                                \
     X(RCEL, many_parts, "record 3: 17 parts", divide(im, 3, 4, 17))                                                            \
     X(RCEL, most_parts, "record 3: 2147483646 parts", divide(im, 3, 4, VIT_RECEIVER_DIVIDED - 2))                              \
-    X(RCEL, part_beyond_the_last, "record 3: its cells must be behind record 3 and before 27", divide(im, 3, 12, 4))           \
+    X(RCEL, part_beyond_the_last, "record 3: its cells must be among those from record 12 on and before 27",                   \
+      divide(im, 3, 12, 4))                                                                                                    \
     X(RCEL, parts_that_wrap, "record 3: its cells must be", divide(im, 3, 0xfffffff0, 4))                                      \
-    X(RCEL, a_part_of_itself, "record 3: its cells must be behind record 3", divide(im, 3, 3, 2))                              \
-    X(RCEL, parts_that_are_divided, "record 3: its cells must be behind record 5", divide(im, 3, 4, 2), divide(im, 5, 9, 2))   \
+    X(RCEL, a_part_of_itself, "cells begin at record 3, expected behind 3", divide(im, 3, 3, 2))                               \
+    X(RCEL, the_first_of_itself, "cells begin at record 0, expected behind 0", divide(im, 0, 0, 2))                            \
+    X(RCEL, a_part_before_it, "record 1: its cells must be among those from record 2 on and before 2", divide(im, 3, 2, 2),    \
+      divide(im, 1, 9, 2))                                                                                                     \
+    X(RCEL, parts_of_two_levels, "record 3: its cells must be among", divide(im, 3, 5, 3), divide(im, 6, 9, 2))                \
+    X(RCEL, divided_thrice, "record 9: divided more than", divide(im, 3, 4, 2), divide(im, 5, 9, 2), divide(im, 9, 13, 2))     \
     X(RCEL, padding_of_a_divided_cell, "record 3: padding", divide(im, 3, 4, 2), im->receiver_cells[3].receiver[2] = 1)        \
     X(RSPL, receiver_beyond_the_last, "record 1: receiver 512 of 512", im->splits[1].receiver[1] = 512)                        \
     X(RSPL, normal_too_short, "record 0: its normal", im->splits[0].normal[1] = 0.5f)                                          \
@@ -99,6 +104,7 @@
 #define LIMITS(X)                                                                                                              \
     X(no_split_used, im->receiver_cells[0].split = im->receiver_cells[26].split = VIT_NONE)                                    \
     X(a_cell_divided_up_to_the_last, divide(im, 3, 11, 4))                                                                     \
+    X(parts_that_are_divided, divide(im, 3, 4, 2), divide(im, 5, 9, 2), divide(im, 4, 11, 4))                                  \
     X(two_divided_cells, divide(im, 3, 5, 2), divide(im, 4, 5, 4))                                                             \
     X(parts_up_to_the_last_cell, im->sides[0] = 5u << VIT_SIDE_PARTS_SHIFT | 2)                                                \
     X(three_times_the_last_receiver,                                                                                           \

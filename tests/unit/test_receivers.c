@@ -67,14 +67,14 @@ static looked_up look_up(const receivers *found, uint32_t side, float b1, float 
     looked_up r = {.cell = found->cells + k, .at = cells_within(&whole, parts, k - first)};
     r.of_cell = r.at;
     weigh(&r.at, b1, b2, r.w);
-    if (!VIT_RECEIVER_IS_DIVIDED(r.cell->split))
-        return r;
-    vit_u32 parted = (r.cell->split & ~VIT_RECEIVER_DIVIDED) << VIT_SIDE_PARTS_SHIFT;
-    const cells within = {.sides = &parted};
-    const uint32_t part = cells_at(&within, 0, (float)r.w[1], (float)r.w[2]);
-    r.at = cells_within(&r.at, parted >> VIT_SIDE_PARTS_SHIFT, part);
-    r.cell = found->cells + r.cell->receiver[0] + part;
-    weigh(&r.at, b1, b2, r.w);
+    while (VIT_RECEIVER_IS_DIVIDED(r.cell->split)) {
+        vit_u32 parted = (r.cell->split & ~VIT_RECEIVER_DIVIDED) << VIT_SIDE_PARTS_SHIFT;
+        const cells within = {.sides = &parted};
+        const uint32_t part = cells_at(&within, 0, (float)r.w[1], (float)r.w[2]);
+        r.at = cells_within(&r.at, parted >> VIT_SIDE_PARTS_SHIFT, part);
+        r.cell = found->cells + r.cell->receiver[0] + part;
+        weigh(&r.at, b1, b2, r.w);
+    }
     return r;
 }
 
@@ -291,10 +291,77 @@ static void what_lies_near_records_follows_them_where_light_is_even(void **state
     close_lab(&l);
 }
 
+/* A room with a low wall, thinner than cells, on a floor that goes on beneath it. */
+static room *room_with_wall(void) {
+    room *r = room_closed(0.5f);
+    const float low[3] = {0.3f, -1.0f, -0.7f}, x[3] = {0.12f, 0, 0}, y[3] = {0, 0.8f, 0}, z[3] = {0, 0, 1.4f};
+    const float far_x[3] = {0.42f, -1.0f, -0.7f}, far_z[3] = {0.3f, -1.0f, 0.7f}, top[3] = {0.3f, -0.2f, -0.7f};
+    room_quad(r, low, z, y, WALLS);
+    room_quad(r, far_x, y, z, WALLS);
+    room_quad(r, low, y, x, WALLS);
+    room_quad(r, far_z, x, y, WALLS);
+    room_quad(r, top, z, x, WALLS);
+    return r;
+}
+
+static bool is_in_the_wall(vec3 at) {
+    return at.x > 0.3f && at.x < 0.42f && fabsf(at.z) < 0.7f;
+}
+
+/* What a place takes, on its side of what parts its cell. */
+static const vit_u32 *receivers_at(const receivers *found, uint32_t side, float b1, float b2, vec3 place) {
+    const vit_receiver_cell *cell = look_up(found, side, b1, b2).cell;
+    const vit_receiver_split *split = cell->split == VIT_NONE ? NULL : found->splits + cell->split;
+    return !split || vec3_dot(vec3_load(split->normal), place) > split->offset ? cell->receiver : split->receiver;
+}
+
+/* How many places of the floor beside the wall there were; none takes light from within it or from behind it. */
+static uint32_t look_beside_the_wall(const lab *l, const receivers *found) {
+    uint32_t near_wall = 0;
+    for (uint32_t s = 0; s < 2 * l->r->m.triangles; s += 2)
+        for (uint32_t i = 0; i < 4096 && side_face(&l->r->g, s).y > 0.99f; i++) {
+            const float b1 = unit_float(pcg(i)) * 0.5f, b2 = unit_float(pcg(i ^ 0x80000000u)) * (1.0f - b1);
+            const vec3 at = side_place(&l->r->g, s, b1, b2);
+            if (at.y > -0.99f || fabsf(fabsf(at.x - 0.36f) - 0.2f) > 0.1f || fabsf(at.z) > 0.6f)
+                continue; /* not beside it; nearer than 4 cm cells may have a corner there alone */
+            const vit_u32 *of = receivers_at(found, s, b1, b2, at);
+            near_wall++;
+            for (int k = 0; k < 3; k++) {
+                const receiver *r = found->receivers + of[k];
+                const vec3 place = side_place(&l->r->g, r->side, r->b1, r->b2);
+                if (is_in_the_wall(place) || (fabsf(place.z) < 0.7f && (place.x > 0.36f) != (at.x > 0.36f)))
+                    fail_msg("the floor at %g %g takes what is at %g %g", (double)at.x, (double)at.z, (double)place.x,
+                             (double)place.z);
+            }
+        }
+    return near_wall;
+}
+
+/* Inside of the wall it is dark: what lies beside it must not be interpolated with that. */
+static void no_place_beside_a_wall_takes_light_of_its_inside(void **state) {
+    (void)state;
+    static const float spacings[] = {6.0f, 9.0f, 12.0f, 14.0f};
+    lab l;
+    open_lab(&l, room_with_wall());
+    for (size_t i = 0; i < sizeof spacings / sizeof *spacings; i++) {
+        const receivers_input in = seen_from_the_middle(&l, spacings[i]);
+        receivers found;
+        vit_text why = {""};
+        assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+        const uint32_t near_wall = look_beside_the_wall(&l, &found);
+        print_message("spacing %g: %u places beside the wall, %u parted cells\n", (double)spacings[i], near_wall,
+                      found.split_count);
+        assert_true(near_wall > 100 && found.split_count > 4);
+        receivers_free(&found);
+    }
+    close_lab(&l);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(receivers_of_a_plane_interpolate_what_is_linear),
         cmocka_unit_test(divided_cells_fit_together),
+        cmocka_unit_test(no_place_beside_a_wall_takes_light_of_its_inside),
         cmocka_unit_test(what_lies_near_records_follows_them_where_light_is_even),
     };
     return cmocka_run_group_tests_name("receivers", tests, NULL, NULL);

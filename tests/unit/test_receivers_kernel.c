@@ -94,30 +94,41 @@ static cell_lab *make_cells(int n, const float v0[3], const float v1[3], const f
     return l;
 }
 
-/* Divides each cell of the back, whose parts get the light behind a split. */
-static void divide_back(cell_lab *l, int n, int parts) {
-    vit_u32 record = 2u * (vit_u32)(n * n), cell = (vit_u32)(n * n), first = 6 * record;
+/* Divides a cell into parts[0] along each edge, these into parts[1] and so on up to a 0; the last get the light behind a
+ * split. The next free record and receiver. */
+static void divide(cell_lab *l, vit_u32 cell, double of[3][2], const int *parts, vit_u32 *record, vit_u32 *receiver) {
+    vit_u32 part = *record;
+    l->cells[cell] = (vit_receiver_cell){.receiver = {part, 0, 0}, .split = VIT_RECEIVER_DIVIDED | (vit_u32)parts[0]};
+    *record += (vit_u32)(parts[0] * parts[0]);
+    assert_true(*record <= MOST_RECORDS);
+    for (int x = 0; x < parts[0]; x++)
+        for (int y = 0; y < parts[0] - x; y++)
+            for (int up = 0; up < (x + y < parts[0] - 1 ? 2 : 1); up++, part++) {
+                double within[3][2], corner[3][2];
+                corners_of(parts[0], x, y, up, within);
+                for (int c = 0; c < 3; c++)
+                    for (int k = 0; k < 2; k++)
+                        corner[c][k] = of[0][k] + within[c][0] * (of[1][k] - of[0][k]) + within[c][1] * (of[2][k] - of[0][k]);
+                if (parts[1]) {
+                    divide(l, part, corner, parts + 1, record, receiver);
+                    continue;
+                }
+                put_receivers(l, *receiver, 1, 1, corner, l->cells[part].receiver);
+                l->cells[part].split = VIT_NONE;
+                *receiver += 3;
+            }
+}
+
+/* Divides each cell of the back. */
+static void divide_back(cell_lab *l, int n, const int *parts) {
+    vit_u32 record = 2u * (vit_u32)(n * n), cell = (vit_u32)(n * n), receiver = 6 * record;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n - i; j++)
             for (int upper = 0; upper < (i + j < n - 1 ? 2 : 1); upper++, cell++) {
                 double of[3][2];
                 corners_of(n, i, j, upper, of);
-                l->cells[cell] =
-                    (vit_receiver_cell){.receiver = {record, 0, 0}, .split = VIT_RECEIVER_DIVIDED | (vit_u32)parts};
-                for (int x = 0; x < parts; x++)
-                    for (int y = 0; y < parts - x; y++)
-                        for (int up = 0; up < (x + y < parts - 1 ? 2 : 1); up++, record++, first += 3) {
-                            double within[3][2], corner[3][2];
-                            corners_of(parts, x, y, up, within);
-                            for (int c = 0; c < 3; c++)
-                                for (int k = 0; k < 2; k++)
-                                    corner[c][k] =
-                                        of[0][k] + within[c][0] * (of[1][k] - of[0][k]) + within[c][1] * (of[2][k] - of[0][k]);
-                            put_receivers(l, first, 1, 1, corner, l->cells[record].receiver);
-                            l->cells[record].split = VIT_NONE;
-                        }
+                divide(l, cell, of, parts, &record, &receiver);
             }
-    assert_true(record <= MOST_RECORDS);
 }
 
 /* Place i at these weights, on a side. */
@@ -179,7 +190,7 @@ static void a_linear_function_comes_back_in_every_cell_on_both_sides(void **stat
 
 static void a_divided_cell_has_the_light_of_its_parts(void **state) {
     (void)state;
-    static const int parts[] = {1, 2, 5, VIT_RECEIVER_PARTS};
+    static const int parts[][VIT_RECEIVER_LEVELS + 1] = {{1}, {2}, {5}, {VIT_RECEIVER_PARTS}, {1, 1}, {3, 4}, {2, 7}};
     for (int n = 1; n <= DIVIDED; n++)
         for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
             cell_lab *l = make_cells(n, corner0, corner1, corner2, NULL, 0);

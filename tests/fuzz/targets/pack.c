@@ -235,6 +235,20 @@ static void follow_receivers(const vit_pack *p, const vit_u32 receiver[3]) {
     }
 }
 
+/* So many times at most it is divided, whatever place is looked up. */
+static int divided(const vit_receiver_cell *cells, vit_u32 cell) {
+    const vit_u32 parts = cells[cell].split & ~VIT_RECEIVER_DIVIDED, first = cells[cell].receiver[0];
+    int most = 0;
+    if (!VIT_RECEIVER_IS_DIVIDED(cells[cell].split))
+        return 0;
+    FUZZ_HOLDS(first > cell);
+    for (vit_u32 k = first; k < first + parts * parts; k++) {
+        const int one = divided(cells, k);
+        most = one > most ? one : most;
+    }
+    return most + 1;
+}
+
 static void follow_receiver_cells(const vit_pack *p) {
     const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
     const vit_receiver_split *splits = p->section[VIT_SECTION_RSPL];
@@ -242,8 +256,7 @@ static void follow_receiver_cells(const vit_pack *p) {
         if (VIT_RECEIVER_IS_DIVIDED(cells[i].split)) {
             const vit_u32 parts = cells[i].split & ~VIT_RECEIVER_DIVIDED, end = cells[i].receiver[0] + parts * parts;
             FUZZ_HOLDS(parts >= 1 && parts <= VIT_RECEIVER_PARTS && end <= p->scene->receiver_cells);
-            for (vit_u32 k = cells[i].receiver[0]; k < end; k++)
-                FUZZ_HOLDS(!VIT_RECEIVER_IS_DIVIDED(cells[k].split));
+            FUZZ_HOLDS(divided(cells, i) <= VIT_RECEIVER_LEVELS);
             continue;
         }
         follow_receivers(p, cells[i].receiver);
