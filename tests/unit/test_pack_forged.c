@@ -10,7 +10,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 9", im->header->version = 9)                                                             \
+    X(header, newer_version, "version 10", im->header->version = 10)                                                           \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
