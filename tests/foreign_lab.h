@@ -3,16 +3,8 @@
 #ifndef VIT_TESTS_FOREIGN_LAB_H
 #define VIT_TESTS_FOREIGN_LAB_H
 
-#include "case_file.h"
-#include "import_lab.h"
+#include "case_model.h"
 #include <minizip/zip.h>
-
-static inline void box_is(const model *m, double x, double y, double z, double far_x, double far_y, double far_z) {
-    const double lo[3] = {x, y, z}, hi[3] = {far_x, far_y, far_z};
-    for (int k = 0; k < 3; k++)
-        if (fabs(m->lo[k] - lo[k]) > 1e-7 || fabs(m->hi[k] - hi[k]) > 1e-7)
-            fail_msg("axis %d: %.9g to %.9g, not %.9g to %.9g", k, m->lo[k], m->hi[k], lo[k], hi[k]);
-}
 
 /* The file in a scene whose mesh has these settings. */
 static inline void import_with(const char *file, const char *settings, model *m) {
@@ -110,16 +102,6 @@ static inline void put_3mf(const char *unit, const char *resources, const char *
              "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
     put_part(archive, "3D/3dmodel.model", model_text);
     assert_int_equal(zipClose(archive, NULL), ZIP_OK);
-}
-
-/* NULL: it is not here. */
-static inline const char *import_case(const char *name, model *m) {
-    const char *path = case_file(name);
-    if (!path)
-        skip();
-    import_good(path, m);
-    check_promises(m);
-    return path;
 }
 
 #endif

@@ -106,11 +106,4 @@ static inline void uv_is(const model *m, size_t i, double u, double v) {
         fail_msg("uv %zu is (%g, %g), want (%g, %g)", i, (double)t[0], (double)t[1], u, v);
 }
 
-static inline void box_is(const model *m, double x, double y, double z, double far_x, double far_y, double far_z) {
-    const double want[6] = {x, y, z, far_x, far_y, far_z};
-    for (int k = 0; k < 6; k++)
-        if (!near(k < 3 ? m->lo[k] : m->hi[k - 3], want[k]))
-            fail_msg("box (%g, %g, %g) to (%g, %g, %g)", m->lo[0], m->lo[1], m->lo[2], m->hi[0], m->hi[1], m->hi[2]);
-}
-
 #endif

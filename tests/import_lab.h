@@ -247,4 +247,11 @@ static inline const model_material *named(const model *m, const char *name) {
 
 #define T(name) cmocka_unit_test(name)
 
+static inline void box_is(const model *m, double x, double y, double z, double far_x, double far_y, double far_z) {
+    const double lo[3] = {x, y, z}, hi[3] = {far_x, far_y, far_z};
+    for (int k = 0; k < 3; k++)
+        if (fabs(m->lo[k] - lo[k]) > 1e-7 || fabs(m->hi[k] - hi[k]) > 1e-7)
+            fail_msg("axis %d: %.9g to %.9g, not %.9g to %.9g", k, m->lo[k], m->hi[k], lo[k], hi[k]);
+}
+
 #endif

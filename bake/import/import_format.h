@@ -30,7 +30,8 @@ typedef struct import_format {
     /* Fills in what material `use->source` of the file is, for vertices of colour use->tint; the rest of `use` is as
      * import_material.c made it. */
     bool (*material)(struct importer *im, struct material_use *use);
-    /* Texels of the image that the file holds as number `index`, < im->embedded. What is wrong with it, or NULL. */
+    /* Texels of the image that the file holds as number `index`, < im->embedded. What is wrong with it, or NULL. The function
+     * is NULL of formats whose files hold none. */
     const char *(*image)(struct importer *im, unsigned index, struct model_image *out);
 } import_format;
 

@@ -6,15 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_RECEIVERS 4096.0 /* at a spacing of LEAST_SPACING pixels, as many more as that is closer */
-#define LEAST_SPACING 16.0
 #define ALL_REFLECTIONS 1024.0 /* as many times direct light as all of them together can be: transfer_matrix_make() */
-
-/* In small pictures pixels say little about where light changes. */
-static uint32_t least_receivers(double spacing) {
-    const double closer = LEAST_SPACING / spacing;
-    return (uint32_t)(LEAST_RECEIVERS * closer * closer);
-}
 
 /* Sources that stay as they are, and lights that do not. */
 static uint32_t sources(const bake *b, photons_light *still, uint32_t *moving, uint32_t *moving_count) {
@@ -179,7 +171,6 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .size = (double)out->plan.sky_radius,
                       .reflections = out->plan.reflections,
                       .spacing = b->scene.quality.receiver_spacing,
-                      .least = least_receivers(b->scene.quality.receiver_spacing),
                       .error = b->scene.quality.basis_error,
                       .receiver_rays = (uint32_t)b->scene.quality.receiver_rays,
                       .within = c->copies > 1,

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define LEAST_RECEIVERS 4096.0 /* at a spacing of LEAST_SPACING pixels, as many more as that is closer: in small pictures */
+#define LEAST_SPACING 16.0     /* pixels say little about where light changes */
 #define MOST_RECEIVERS 196608u
 #define MOST_RECORDS 49152u
 #define CELLS_PER_RECEIVER 4u /* of surfaces that light comes from, about */
@@ -228,6 +230,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
     states s = {0};
     finding f = {.in = in, .states = &s};
     vit_status status = make_states(in, &s, why);
+    const double closer = LEAST_SPACING / in->spacing;
     const receivers_input place = {.rays = in->rays,
                                    .geometry = in->geometry,
                                    .tracks = in->tracks,
@@ -237,7 +240,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .size = (float)in->size,
                                    .within = in->within,
                                    .spacing = (float)in->spacing,
-                                   .least = in->least,
+                                   .least = (uint32_t)(LEAST_RECEIVERS * closer * closer),
                                    .most = MOST_RECEIVERS,
                                    .records = MOST_RECORDS,
                                    .threads = in->threads,

@@ -19,7 +19,6 @@ typedef struct baked_input {
     bool live;   /* nothing is baked of lights that move: they tell where light changes, and so where receivers are, alone */
     double size; /* of the scene: radius of a sphere round it, m */
     uint32_t reflections;                      /* at most, or TRANSPORT_CONVERGED */
-    uint32_t least;                            /* receivers wanted at least; 0: what `spacing` gives */
     double spacing, error;                     /* quality.receiver_spacing, quality.basis_error */
     uint32_t receiver_rays;                    /* quality.receiver_rays */
     bool within;                               /* receivers_input.within */

@@ -10,7 +10,7 @@ static bool is_of(const baked_kept_one *o, const baked_input *in, uint64_t effec
     const baked_input *k = &o->in;
     return o->asked > 0 && o->effects == effects && k->frames == in->frames && k->width == in->width &&
            k->height == in->height && k->still_count == in->still_count && k->moving_count == in->moving_count &&
-           k->live == in->live && k->reflections == in->reflections && same(k->spacing, in->spacing) && k->least == in->least &&
+           k->live == in->live && k->reflections == in->reflections && same(k->spacing, in->spacing) &&
            same(k->error, in->error) && k->receiver_rays == in->receiver_rays && k->within == in->within &&
            k->panes == in->panes;
 }

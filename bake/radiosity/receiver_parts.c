@@ -135,17 +135,9 @@ bool receivers_find_edges(placing *p) {
     return true;
 }
 
-/* Of a cell that a wall parts, edges may have ends on its other side. */
-static bool lie_in_the_open(const placing *p, uint32_t a, uint32_t b, float lift) {
-    const receiver *from = p->out->receivers + a, *to = p->out->receivers + b;
-    return separation_sees(p->in->rays, receivers_lifted(p, from->side, from->b1, from->b2, lift),
-                           receivers_lifted(p, to->side, to->b1, to->b2, lift));
-}
-
-static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight, float lift) {
+static bool hang(placing *p, uint32_t on, uint32_t a, uint32_t b, float weight) {
     receivers *o = p->out;
-    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].follows || o->receivers[on].carries ||
-        !lie_in_the_open(p, on, a, lift) || !lie_in_the_open(p, on, b, lift))
+    if (on == VIT_NONE || a == VIT_NONE || b == VIT_NONE || o->receivers[on].follows || o->receivers[on].carries)
         return true;
     if (o->follower_count == p->follower_room) {
         const uint32_t room = p->follower_room ? 2 * p->follower_room : 1024;
@@ -174,8 +166,7 @@ bool receivers_hang(placing *p, uint32_t piece, uint32_t (*node)[RECEIVER_NODES]
             on[k] = node[from[0] * (parts - k) + to[0] * k][from[1] * (parts - k) + to[1] * k];
         for (uint32_t k = 1; k < parts && fine; k++) {
             const uint32_t low = k / step * step;
-            fine = k == low || hang(p, on[k], on[low], on[low + step], (float)(k - low) / (float)step,
-                                    receivers_lift(p, p->pieces[piece].side, p->pieces[piece].finer * parts));
+            fine = k == low || hang(p, on[k], on[low], on[low + step], (float)(k - low) / (float)step);
         }
     }
     return fine;

@@ -117,15 +117,14 @@ static uint64_t corner_key(const placing *p, const cornered *c, int corner) {
     return mixed(h, 1u);
 }
 
-vec3 receivers_lifted(const placing *p, uint32_t side, float b1, float b2, float lift) {
+static vec3 lifted(const placing *p, uint32_t side, float b1, float b2, float lift) {
     return vec3_along(side_place(p->in->geometry, side, b1, b2), side_face(p->in->geometry, side), lift);
 }
 
 /* Is there nothing right above the place, as something that is sunk into the surface? */
 static bool is_open(const placing *p, uint32_t side, float b1, float b2, float lift) {
     const float offset = p->in->rays->s->ray_offset;
-    return separation_sees(p->in->rays, receivers_lifted(p, side, b1, b2, offset),
-                           receivers_lifted(p, side, b1, b2, lift + offset));
+    return separation_sees(p->in->rays, lifted(p, side, b1, b2, offset), lifted(p, side, b1, b2, lift + offset));
 }
 
 /* The receiver of a corner: the one that is there already if it can be seen from the place, else a new one at the pulled-in
@@ -148,28 +147,28 @@ static uint32_t corner_receiver(placing *p, const cornered *c, int corner, const
         known = p->found[at];
     }
     const receiver *r = p->out->receivers + known;
-    if (!c->seen || !p->met[c->side] || separation_sees(p->in->rays, from, receivers_lifted(p, r->side, r->b1, r->b2, c->lift)))
+    if (!c->seen || !p->met[c->side] || separation_sees(p->in->rays, from, lifted(p, r->side, r->b1, r->b2, c->lift)))
         return known;
     return new_receiver(p, c->side, in[0], in[1], c->reach);
 }
 
 /* 3. What stands on a cell. */
 
-float receivers_lift(const placing *p, uint32_t side, uint32_t parts) {
+static float lift_of(const placing *p, uint32_t side, uint32_t parts) {
     return separation_lift(p->in->rays, p->spacing[side] / (float)parts);
 }
 
 static bool parted_cell(void *user, uint32_t cell, separation_cell *out) {
     const placing *p = user;
     const uint32_t side = p->cells.side_of[cell];
-    *out = (separation_cell){side, cells_corners(&p->cells, cell), receivers_lift(p, side, 1)};
+    *out = (separation_cell){side, cells_corners(&p->cells, cell), lift_of(p, side, 1)};
     return p->met[side] && p->looked_at[cell];
 }
 
 static bool parted_part(void *user, uint32_t part, separation_cell *out) {
     const placing *p = user;
     const receiver_piece *piece = p->pieces + p->end + part;
-    *out = (separation_cell){piece->side, piece->at, receivers_lift(p, piece->side, piece->finer)};
+    *out = (separation_cell){piece->side, piece->at, lift_of(p, piece->side, piece->finer)};
     return true;
 }
 
@@ -211,8 +210,8 @@ static void take_corners(placing *p, const cornered *c, uint32_t places, vit_u32
         float at[2] = {p->at[c->side][0], p->at[c->side][1]}; /* of an only cell the place that a camera sees */
         if (!c->seen || !c->only)
             place_for(p, c, i, places, at);
-        const vec3 from = receivers_lifted(p, c->side, at[0], at[1], c->lift);
-        if (!c->seen || (separation_sees(p->in->rays, from, receivers_lifted(p, c->side, in[0], in[1], c->lift)) &&
+        const vec3 from = lifted(p, c->side, at[0], at[1], c->lift);
+        if (!c->seen || (separation_sees(p->in->rays, from, lifted(p, c->side, in[0], in[1], c->lift)) &&
                          is_open(p, c->side, in[0], in[1], c->lift)))
             out[i] = corner_receiver(p, c, i, in, from);
         else
@@ -262,7 +261,7 @@ static bool take_cell(placing *p, const separations *s, uint32_t cell) {
                         .at = cells_corners(&p->cells, cell),
                         .weld = p->seen[side] ? weld : p->unseen,
                         .reach = p->seen[side] ? reach : p->unseen,
-                        .lift = receivers_lift(p, side, 1),
+                        .lift = lift_of(p, side, 1),
                         .seen = p->seen[side],
                         .only = p->cells.sides[side] >> VIT_SIDE_PARTS_SHIFT == 1};
     return take(p, &c, s, cell, p->out->cells + cell);
@@ -279,7 +278,7 @@ static bool take_parts(placing *p, const separations *s, uint32_t piece) {
     node[0][of->parts] = whole->receiver[2];
     cornered c = {.side = of->side,
                   .weld = p->spacing[of->side] * (WELD / (float)(VIT_RECEIVER_PARTS * VIT_RECEIVER_PARTS)), /* at any level */
-                  .lift = receivers_lift(p, of->side, of->finer * of->parts),
+                  .lift = lift_of(p, of->side, of->finer * of->parts),
                   .seen = true,
                   .own = own};
     bool fine = true;

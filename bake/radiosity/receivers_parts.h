@@ -47,10 +47,6 @@ typedef struct placing {
     bool failed;
 } placing;
 
-/* receivers.c: how far above a side places look at each other, where its cells' edges have so many parts, m; and such a place.
- */
-float receivers_lift(const placing *p, uint32_t side, uint32_t parts);
-vec3 receivers_lifted(const placing *p, uint32_t side, float b1, float b2, float lift);
 /* receiver_spacing.c: `spacing`, `seen`, `met`, `at`, `sights`. False: out of memory. */
 bool receivers_find_spacing(placing *p);
 /* `looked_at`, once there are cells. */

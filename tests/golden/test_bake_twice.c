@@ -59,25 +59,22 @@ static void assert_bakes_alike(const char *input, const char *options, size_t co
 
 static void a_box_with_a_moving_light_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--no-check --indirect photons --size 160x120 --frames 3 --photons 5000",
-                       ALL_WAYS);
+    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--indirect photons --size 160x120 --frames 3 --photons 5000", ALL_WAYS);
 }
 
 static void baked_light_of_a_moving_light_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--no-check --indirect basis --size 96x64 --frames 12 --receiver-rays 64",
-                       ALL_WAYS);
+    assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--indirect basis --size 96x64 --frames 12 --receiver-rays 64", ALL_WAYS);
 }
 
 static void a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_PACKS "/room.cfg", "--no-check --estimate buckets", HOST_WAYS);
+    assert_bakes_alike(TEST_PACKS "/room.cfg", "--estimate buckets", HOST_WAYS);
 }
 
 static void zones_and_areas_bake_to_the_same_bytes(void **state) {
     (void)state;
-    assert_bakes_alike(TEST_PACKS "/room.cfg", "--no-check --zones 2 --effective-area 1 --bounce-sequence 1 --radius 0.3",
-                       ALL_WAYS);
+    assert_bakes_alike(TEST_PACKS "/room.cfg", "--zones 2 --effective-area 1 --bounce-sequence 1 --radius 0.3", ALL_WAYS);
 }
 
 static void a_mesh_without_a_scene_file_bakes_to_the_same_bytes(void **state) {

@@ -67,10 +67,7 @@ static found *find_or_skip(const char *name) {
 static int bake(tool_run *r, const char *path) {
     struct rusage used;
     (void)unlink(PACK);
-    tool(r,
-         TOOL_BAKE " %s -o " PACK " --quiet --no-check --device host --size 32x24 --frames 2 --photons 100 "
-                   "--receiver-rays 16 --receiver-spacing 32",
-         path);
+    tool(r, TOOL_BAKE " %s -o " PACK " --quiet --quality stated --device host --size 32x24 --frames 2 --photons 100", path);
     assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0); /* the largest so far */
     if (used.ru_maxrss > MOST_KIB || (r->code != OK && r->code != BAD_INPUT))
         fail_msg("%s: exit %d, at most %ld KiB\n%s", path, r->code, used.ru_maxrss, r->err);

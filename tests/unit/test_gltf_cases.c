@@ -2,18 +2,8 @@
  * worked out by hand in their READMEs. Files like them are made by test_gltf_accessors.c, test_gltf_scene.c and
  * test_import_gltf_materials.c, so that nothing is lost where the folder is not at hand. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/gltf_cases"
-#include "case_file.h"
+#include "case_model.h"
 #include "gltf_lab.h"
-
-/* Skips the test if the case is not there. */
-static const char *import_case(const char *name, model *m) {
-    const char *path = case_file(name);
-    if (!path)
-        skip();
-    import_good(path, m);
-    check_promises(m);
-    return path;
-}
 
 static void emissive_strength(void **state) {
     model m;

@@ -2,9 +2,8 @@
  * BMP and JPEG byte by byte (a JPEG of one block of one colour, whose only coefficient is 8 times the sample: T.81, A.3.3), PNG
  * by libpng. Right is worked out by hand. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/images"
-#include "case_file.h"
+#include "case_model.h"
 #include "import/image_head.h"
-#include "import_lab.h"
 #include "light/sky.h"
 #include <png.h>
 
@@ -63,10 +62,7 @@ static void rows_of_a_bmp_may_begin_at_the_top(void **state) {
 static void case_bmp_top_down(void **state) {
     model m;
     (void)state;
-    const char *path = case_file("bmp-top-down/tri.obj");
-    if (!path)
-        skip();
-    import_good(path, &m);
+    (void)import_case("bmp-top-down/tri.obj", &m);
     assert_string_equal(warnings, "");
     texel_is(&m, 0, 0, 255, 0, 0, 255);
     texel_is(&m, 0, 1, 0, 0, 255, 255);

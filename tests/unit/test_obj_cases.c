@@ -2,16 +2,11 @@
  * values are worked out by hand in their READMEs. Files like them are made by test_obj_files.c and test_mtl_lines.c, so that
  * nothing is lost where the folder is not at hand. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/obj_cases"
-#include "case_file.h"
-#include "import_lab.h"
+#include "case_model.h"
 
-/* Skips the test if the case is not there. */
-static void import_case(const char *name, model *m) {
-    const char *path = case_file(name);
-    if (!path)
-        skip();
-    import_good(path, m);
-    check_promises(m);
+/* No warning is due. */
+static void import_whole(const char *name, model *m) {
+    (void)import_case(name, m);
     if (warnings[0])
         fail_msg("%s", warnings);
 }
@@ -19,23 +14,23 @@ static void import_case(const char *name, model *m) {
 static void lines_of_mtl(void **state) {
     model m;
     (void)state;
-    import_case("mtl-lines/kd.obj", &m);
+    import_whole("mtl-lines/kd.obj", &m);
     assert_true(near3(m.materials[0].albedo, 0.6, 0.6, 0.6));
     model_free(&m);
-    import_case("mtl-lines/scale.obj", &m);
+    import_whole("mtl-lines/scale.obj", &m);
     uv_at(&m, 1, 0, 2, 1);
     uv_at(&m, 0, 1, 0, -1);
     assert_int_equal(m.image_count, 1);
     model_free(&m);
-    import_case("mtl-lines/scale1.obj", &m);
+    import_whole("mtl-lines/scale1.obj", &m);
     uv_at(&m, 1, 0, 2, 1);
     uv_at(&m, 0, 1, 0, 0);
     assert_int_equal(m.image_count, 1);
     model_free(&m);
-    import_case("mtl-lines/space.obj", &m);
+    import_whole("mtl-lines/space.obj", &m);
     assert_int_equal(m.image_count, 1);
     model_free(&m);
-    import_case("mtl-lines/map.obj", &m);
+    import_whole("mtl-lines/map.obj", &m);
     assert_true(near3(m.materials[0].albedo, 1, 1, 1) && m.image_count == 1);
     model_free(&m);
 }
@@ -43,10 +38,7 @@ static void lines_of_mtl(void **state) {
 static void a_halo_is_opaque_in_front(void **state) {
     model m;
     (void)state;
-    const char *path = case_file("mtl-lines/halo.obj");
-    if (!path)
-        skip();
-    import_good(path, &m);
+    (void)import_case("mtl-lines/halo.obj", &m);
     assert_true(m.triangles == 2 && fabsf(m.materials[0].alpha - 0.9f) < 1e-6f);
     assert_non_null(strstr(warnings, "-halo"));
     model_free(&m);
@@ -55,10 +47,10 @@ static void a_halo_is_opaque_in_front(void **state) {
 static void exporters_defaults(void **state) {
     model m;
     (void)state;
-    import_case("obj-default-ks/m1.obj", &m);
+    import_whole("obj-default-ks/m1.obj", &m);
     assert_true(is_matt(&m.materials[0]) && near3(m.materials[0].albedo, 0.8, 0.8, 0.8));
     model_free(&m);
-    import_case("obj-default-ks/m3.obj", &m);
+    import_whole("obj-default-ks/m3.obj", &m);
     assert_int_equal(m.material_count, 3);
     for (int i = 0; i < 3; i++)
         assert_true(is_matt(&m.materials[i]) && near3(m.materials[i].albedo, 0.8, 0.8, 0.8));
@@ -68,13 +60,13 @@ static void exporters_defaults(void **state) {
 static void numbers_without_a_leading_zero(void **state) {
     model m;
     (void)state;
-    import_case("obj-leading-dot/shift.obj", &m);
+    import_whole("obj-leading-dot/shift.obj", &m);
     assert_true(m.triangles == 2 && m.lo[0] == 0 && m.lo[1] == 0 && m.hi[0] == 2 && m.hi[1] == 2);
     model_free(&m);
-    import_case("obj-leading-dot/colour.obj", &m);
+    import_whole("obj-leading-dot/colour.obj", &m);
     assert_true(m.hi[0] == 1 && near3(m.materials[0].albedo, 0.3, 0.15, 0.6));
     model_free(&m);
-    import_case("obj-leading-dot/uv.obj", &m);
+    import_whole("obj-leading-dot/uv.obj", &m);
     assert_true(m.triangles == 1);
     model_free(&m);
 }

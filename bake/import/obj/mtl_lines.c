@@ -126,7 +126,9 @@ static bool differ(const float *a, const float *b, size_t count) {
 
 /* One option and what belongs to it. False: the word is none. */
 static bool read_option(mtl *m, mtl_map *map, obj_text word, obj_text *line) {
-    static const char *const words_behind[] = {"-blendu", "-blendv", "-cc", "-imfchan", "-type", NULL};
+    static const struct {
+        const char *word, *plain; /* plain: what it says where nothing is lost; NULL: whatever it says */
+    } words_behind[] = {{"-blendu", NULL}, {"-blendv", NULL}, {"-cc", "off"}, {"-imfchan", ""}, {"-type", NULL}};
     static const char *const numbers_behind[] = {"-boost", "-bm", "-texres", NULL};
     static const float none[3] = {0.0f, 0.0f, 0.0f}, plain[2] = {0.0f, 1.0f};
     float v[3] = {0.0f, 0.0f, 0.0f}, range[2] = {0.0f, 1.0f}, scale[3] = {map->scale[0], map->scale[1], 1.0f};
@@ -146,10 +148,10 @@ static bool read_option(mtl *m, mtl_map *map, obj_text word, obj_text *line) {
     } else if (obj_is(word, "-clamp"))
         map->clamp = obj_is(obj_word(line), "on");
     else {
-        for (size_t i = 0; words_behind[i]; i++)
-            if (obj_is(word, words_behind[i])) {
+        for (size_t i = 0; i < sizeof words_behind / sizeof *words_behind; i++)
+            if (obj_is(word, words_behind[i].word)) {
                 const obj_text value = obj_word(line);
-                kept = i < 2 || i > 3 || (i == 2 && obj_is(value, "off"));
+                kept = !words_behind[i].plain || obj_is(value, words_behind[i].plain);
                 m->remarks |= kept ? 0 : 1u << MTL_OPTION;
                 return true;
             }

@@ -52,13 +52,6 @@ static bool read(importer *im, const scene_mesh *mesh) {
     return fine;
 }
 
-static const char *no_image(importer *im, unsigned index, model_image *out) {
-    (void)im;
-    (void)index;
-    (void)out;
-    return "is missing";
-}
-
 /* Its first statement is one of those that OBJ alone begins with. */
 static bool is_it(const uint8_t *head, size_t size) {
     static const char *const words[] = {"mtllib", "usemtl", "vt", "vn", NULL};
@@ -81,10 +74,5 @@ static bool is_it(const uint8_t *head, size_t size) {
 static const char *const suffixes[] = {".obj", NULL};
 static const char *const cannot[] = {"curves and surfaces of free form", "bump maps and emissive textures",
                                      "vertex colours that vary", NULL};
-const import_format obj_format = {.name = "OBJ",
-                                  .suffixes = suffixes,
-                                  .cannot = cannot,
-                                  .is_it = is_it,
-                                  .read = read,
-                                  .material = mtl_material,
-                                  .image = no_image};
+const import_format obj_format = {
+    .name = "OBJ", .suffixes = suffixes, .cannot = cannot, .is_it = is_it, .read = read, .material = mtl_material};

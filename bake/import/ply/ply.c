@@ -109,20 +109,7 @@ static bool is_it(const uint8_t *head, size_t size) {
     return size >= 4 && memcmp(head, "ply", 3) == 0 && head[3] && strchr(" \t\r\n", head[3]);
 }
 
-/* No picture lies in the file. */
-static const char *image(importer *im, unsigned index, model_image *out) {
-    (void)im;
-    (void)index;
-    (void)out;
-    return "is missing";
-}
-
 static const char *const suffixes[] = {".ply", NULL};
 static const char *const cannot[] = {"points and edges", "vertex colours that vary", "alpha", NULL};
-const import_format ply_format = {.name = "PLY",
-                                  .suffixes = suffixes,
-                                  .cannot = cannot,
-                                  .is_it = is_it,
-                                  .read = read,
-                                  .material = ply_material,
-                                  .image = image};
+const import_format ply_format = {
+    .name = "PLY", .suffixes = suffixes, .cannot = cannot, .is_it = is_it, .read = read, .material = ply_material};
