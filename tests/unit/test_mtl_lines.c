@@ -133,6 +133,8 @@ static void what_is_not_done_is_said(void **state) {
         {"Pc 1", "sheen, clearcoat and anisotropy"},
         {"map_Kd -t 1 1 a.tga", "options -t, -mm"},
         {"map_Kd -mm .5 .5 a.tga", "options -t, -mm"},
+        {"map_Kd -cc on a.tga", "options -t, -mm"},
+        {"map_Kd -imfchan r a.tga", "options -t, -mm"},
         {"Kd spectral a.rfl", "colours as 'spectral'"},
         {"map_Ke a.tga\nKe 1", "emissive textures are not supported"},
         {"map_Kd a.tga\nmap_d b c.tga", "opacity texture 'b c.tga' is not the colour texture"},
@@ -146,7 +148,7 @@ static void what_is_not_done_is_said(void **state) {
         model_free(&m);
         refuse(QUAD, true, rows[i][1]);
     }
-    import_lines("Ps 0\nPc 0\nmap_Kd -t 0 0 0 -mm 0 1 a.tga\nbump\nKa 1 1 1\nmap_Ka a.tga\nsharpness 60", "", &m);
+    import_lines("Ps 0\nPc 0\nmap_Kd -t 0 0 0 -mm 0 1 -cc off a.tga\nbump\nKa 1 1 1\nmap_Ka a.tga\nsharpness 60", "", &m);
     model_free(&m);
 }
 
