@@ -41,6 +41,7 @@ const char *radiance_stand(uint8_t *bytes, size_t size, radiance_order *order) {
     if (!rgbe)
         return "holds CIE XYZ, which is not read: save it as RGB";
     if (start == 0 || !next_line(bytes, size, &at, line) ||
+        /* NOLINTNEXTLINE(cert-err34-c): nine digits do not overflow. */
         sscanf(line, "%c%c %9d %c%c %9d%n", &sign[0], &axis[0], &sides[0], &sign[1], &axis[1], &sides[1], &used) != 6 ||
         used != (int)strlen(line) || axis[0] + axis[1] != 'X' + 'Y' || axis[0] < 'X' || axis[0] > 'Y' ||
         !strchr("+-", sign[0]) || !strchr("+-", sign[1]))
@@ -49,8 +50,11 @@ const char *radiance_stand(uint8_t *bytes, size_t size, radiance_order *order) {
     order->from_bottom = sign[order->columns] == '+';
     order->from_right = sign[!order->columns] == '-';
     const uint8_t *second = memchr(bytes + start + 1, sign[1], size - start - 1);
-    memcpy(bytes + start, "-Y", 2);
-    memcpy(bytes + (second - bytes), "+X", 2);
+    uint8_t *first_axis = bytes + start, *second_axis = bytes + (second - bytes);
+    first_axis[0] = '-';
+    first_axis[1] = 'Y';
+    second_axis[0] = '+';
+    second_axis[1] = 'X';
     return NULL;
 }
 

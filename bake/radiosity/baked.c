@@ -88,7 +88,7 @@ static uint32_t baked_lights(const baked_input *in) {
 static vit_status keep(const baked_input *in, const states *s, const float *irradiance, baked *out, vit_text *why) {
     const uint32_t columns = 3 * s->count, count = out->receivers.count,
                    padded = (count + VIT_BASIS_GROUP - 1) / VIT_BASIS_GROUP * VIT_BASIS_GROUP;
-    out->still = calloc(padded, sizeof *out->still);
+    out->still = calloc(padded + 1u, sizeof *out->still);
     out->lights = baked_lights(in);
     out->frames = malloc(((size_t)in->frames * out->lights + 1u) * sizeof *out->frames);
     if (!out->still || !out->frames) {

@@ -34,7 +34,8 @@ static bool grow(importer *im, obj_names *names) {
     for (uint32_t i = 0; i < grown.count; i++)
         *slot_of(&grown, grown.name[i]) = i;
     free(names->slot);
-    *names = grown;
+    names->slot = grown.slot;
+    names->slot_count = grown.slot_count;
     return true;
 }
 
@@ -56,7 +57,8 @@ uint32_t obj_name(importer *im, obj_names *names, obj_text name) {
             return OBJ_NONE;
         }
         memcpy(copy, name.at, size);
-        names->name[names->count] = (obj_text){copy, copy + size};
+        names->name[names->count].at = copy;
+        names->name[names->count].end = copy + size;
         *slot = (uint32_t)names->count++;
     }
     return *slot;

@@ -36,6 +36,7 @@ static bool find_vertex(placing *p, size_t c, uint32_t *out) {
                          .normal = o->corner_normal ? o->corner_normal[c] : OBJ_NONE,
                          .next = p->first[o->corner[c]]};
     for (uint32_t i = want.next; i != OBJ_NONE; i = p->vertex[i].next)
+        /* `first` has vertices that are there. NOLINTNEXTLINE(clang-analyzer-core.NullDereference) */
         if (p->vertex[i].uv == want.uv && p->vertex[i].normal == want.normal) {
             *out = i;
             return true;
@@ -180,9 +181,10 @@ static void count_meshes(obj_file *o) {
 
 bool obj_place(obj_file *o, const double world[12]) {
     placing p = {.o = o, .first = malloc((o->positions + 1) * sizeof *p.first)};
-    bool fine = p.first ? true : import_fail(o->im, "out of memory");
-    if (fine)
-        memset(p.first, 0xff, (o->positions + 1) * sizeof *p.first); /* OBJ_NONE */
+    bool fine = true;
+    if (!p.first)
+        return import_fail(o->im, "out of memory");
+    memset(p.first, 0xff, (o->positions + 1) * sizeof *p.first); /* OBJ_NONE */
     count_meshes(o);
     for (size_t i = 0; fine && i < o->parts; i++)
         fine = place_part(&p, i, world);
