@@ -58,7 +58,7 @@ LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 # Open MPI, if it is installed, spreads references over machines (bake/reference/spread.h).
 LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
-LIBS_BAKE := -lembree$(EMBREE) -lassimp -ljansson -ldraco -lmeshoptimizer -lwebp -lminizip -lconfig -lpng -lstdc++ -lpthread -lm
+LIBS_BAKE := -lembree$(EMBREE) -lassimp -ljansson -ldraco -lmeshoptimizer -lwebp -lzip -lexpat -lconfig -lpng -lstdc++ -lpthread -lm
 
 # The device `host`: runtime/host/kernels.c once for each instruction set, best first, and each number of lanes.
 HOST_LANES := 1 8 16

@@ -1,10 +1,9 @@
-/* FBX, COLLADA and 3MF files of one triangle: corners at 0, 1 along x and 1 along the file's up axis, say. A program defines
+/* FBX and COLLADA files of one triangle: corners at 0, 1 along x and 1 along the file's up axis, say. A program defines
  * FOLDER, where they go, before it includes this. */
 #ifndef VIT_TESTS_FOREIGN_LAB_H
 #define VIT_TESTS_FOREIGN_LAB_H
 
 #include "case_model.h"
-#include <minizip/zip.h>
 
 /* The file in a scene whose mesh has these settings. */
 static inline void import_with(const char *file, const char *settings, model *m) {
@@ -71,37 +70,6 @@ static inline void put_dae(const char *asset, const char *positions, const char 
         asset, more, positions, *more ? "<node id=\"lamp\" name=\"lamp\"><instance_light url=\"#l\"/></node>" : "");
     assert_true(used > 0 && (size_t)used < sizeof text);
     put(FILE_OF("t.dae"), text);
-}
-
-static inline void put_part(zipFile archive, const char *name, const char *text) {
-    zip_fileinfo info = {.dosDate = 0};
-    assert_int_equal(zipOpenNewFileInZip(archive, name, &info, NULL, 0, NULL, 0, NULL, Z_DEFLATED, 9), ZIP_OK);
-    assert_int_equal(zipWriteInFileInZip(archive, text, (unsigned)strlen(text)), ZIP_OK);
-    assert_int_equal(zipCloseFileInZip(archive), ZIP_OK);
-}
-
-static inline void put_3mf(const char *unit, const char *resources, const char *triangle) {
-    char model_text[2048];
-    zipFile archive = zipOpen(FILE_OF("t.3mf"), APPEND_STATUS_CREATE);
-    assert_non_null(archive);
-    (void)snprintf(model_text, sizeof model_text,
-                   "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model %s xmlns=\"http://schemas.microsoft.com/3dmanufacturing/"
-                   "core/2015/02\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">"
-                   "<metadata name=\"SourceAsset_Format\">Collada Importer</metadata><resources>%s"
-                   "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"10\" y=\"0\" "
-                   "z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"10\"/></vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"%s/>"
-                   "</triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>",
-                   unit, resources, triangle);
-    put_part(archive, "[Content_Types].xml",
-             "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default "
-             "Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/><Default "
-             "Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>");
-    put_part(archive, "_rels/.rels",
-             "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
-             "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-             "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
-    put_part(archive, "3D/3dmodel.model", model_text);
-    assert_int_equal(zipClose(archive, NULL), ZIP_OK);
 }
 
 #endif

@@ -1,3 +1,4 @@
+#include "import/3mf/threemf.h"
 #include "import/assimp/assimp.h"
 #include "import/gltf/gltf.h"
 #include "import/import_format.h"
@@ -6,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-const import_format *const import_formats[] = {&gltf_format, &obj_format, &ply_format, &assimp_format, NULL};
+const import_format *const import_formats[] = {&gltf_format, &obj_format, &ply_format, &threemf_format, &assimp_format, NULL};
 
 bool import_has_suffix(const char *file, const char *suffix) {
     const size_t n = strlen(file), k = strlen(suffix);

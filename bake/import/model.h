@@ -52,7 +52,7 @@ typedef struct model_mesh {
     uint64_t triangles; /* that are in the model, of all places */
 } model_mesh;
 
-/* An extension that a glTF file says it uses. */
+/* An extension that a glTF or 3MF file says it uses. */
 typedef struct model_extension {
     char name[64];
     uint32_t file; /* index in scene.meshes */

@@ -5,8 +5,10 @@
 #include "import/importer.h"
 #include "scenes.h"
 
+#include <stdarg.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <zip.h>
 
 #define ROUNDS 11
 
@@ -197,6 +199,59 @@ static void write_obj_grid(const char *folder, uint32_t edge, char path[BENCH_PA
         bench_fail("%s cannot be written", path);
 }
 
+/* Text that grows. */
+typedef struct growing {
+    char *at;
+    size_t size, room;
+} growing;
+
+__attribute__((format(printf, 2, 3))) static void add(growing *g, const char *format, ...) {
+    va_list args;
+    if (g->room - g->size < 256) {
+        g->room = g->room ? 2 * g->room : 1 << 20;
+        g->at = realloc(g->at, g->room);
+        if (!g->at)
+            bench_fail("out of memory");
+    }
+    va_start(args, format);
+    g->size += (size_t)vsnprintf(g->at + g->size, 256, format, args);
+    va_end(args);
+}
+
+/* A height field as 3MF, packed, with six digits behind the point. It is as high as it is wide, so that its box is the same
+ * with z up, as 3MF has it, and with y up, as Assimp has it. */
+static void write_3mf(const char *folder, uint32_t edge, char path[BENCH_PATH]) {
+    static const char relations[] =
+        "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+        "Target=\"/3D/3dmodel.model\" Id=\"r\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+        "</Relationships>";
+    growing g = {NULL, 0, 0};
+    int error;
+    add(&g, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"meter\" "
+            "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n<resources>\n<object id=\"1\" "
+            "type=\"model\">\n<mesh>\n<vertices>\n");
+    for (uint32_t y = 0; y <= edge; y++)
+        for (uint32_t x = 0; x <= edge; x++)
+            add(&g, "<vertex x=\"%.6f\" y=\"%.6f\" z=\"%.6f\"/>\n", x / 7.0, y / 7.0,
+                (x * 7919 + y * 104729) % (edge + 1) / 7.0);
+    add(&g, "</vertices>\n<triangles>\n");
+    for (uint32_t y = 0; y < edge; y++)
+        for (uint32_t x = 0; x < edge; x++) {
+            const uint32_t a = y * (edge + 1) + x, b = a + edge + 1;
+            add(&g, "<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"/>\n<triangle v1=\"%u\" v2=\"%u\" v3=\"%u\"/>\n", a, a + 1, b,
+                a + 1, b + 1, b);
+        }
+    add(&g, "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item objectid=\"1\"/>\n</build>\n</model>\n");
+    (void)snprintf(path, BENCH_PATH, "%s/grid.3mf", folder);
+    zip_t *archive = zip_open(path, ZIP_CREATE | ZIP_TRUNCATE, &error);
+    if (!archive ||
+        zip_file_add(archive, "_rels/.rels", zip_source_buffer(archive, relations, sizeof relations - 1, 0), 0) < 0 ||
+        zip_file_add(archive, "3D/3dmodel.model", zip_source_buffer(archive, g.at, g.size, 0), 0) < 0 ||
+        zip_close(archive) != 0)
+        bench_fail("%s cannot be written", path);
+    free(g.at);
+}
+
 static void copy(const char *from, const char *to) {
     char bytes[65536];
     FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
@@ -235,6 +290,8 @@ int main(void) {
     compare(&c, "ply", path);
     if (!bench_smoke() && copy_scene(&bench_scenes[1], ".bin", folder, path))
         compare(&c, "sponza", path);
+    write_3mf(folder, bench_smoke() ? 16 : 500, path);
+    compare(&c, "3MF grid", path);
     write_obj_grid(folder, bench_smoke() ? 16 : 700, path);
     compare(&c, "OBJ grid", path);
     if (!bench_smoke() && copy_scene(&bench_scenes[2], ".mtl", folder, path))

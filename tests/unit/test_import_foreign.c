@@ -1,4 +1,4 @@
-/* Lights, pictures, colours and text of FBX, COLLADA and 3MF, which releases of Assimp read differently or not at all. Each
+/* Lights, pictures, colours and text of FBX and COLLADA, which releases of Assimp read differently or not at all. Each
  * file is written here (foreign_lab.h), or is of strangers and came out wrong once; right is worked out by hand. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_foreign"
 #include "foreign_lab.h"
@@ -104,29 +104,6 @@ static void spots_of_collada_have_one_angle(void **state) {
     }
 }
 
-static void colours_of_3mf_are_told_of(void **state) {
-    static const char group[] =
-        "<m:colorgroup id=\"7\"><m:color color=\"#FF0000\"/><m:color color=\"#00FF00\"/></m:colorgroup>",
-                      base[] = "<basematerials id=\"7\"><base name=\"red\" displaycolor=\"#FF0000\"/><base name=\"green\" "
-                               "displaycolor=\"#00FF00\"/></basematerials>";
-    model m;
-    (void)state;
-    put_3mf("", group, " pid=\"7\" p1=\"0\"");
-    import_good(FILE_OF("t.3mf"), &m);
-    assert_non_null(strstr(warnings, "3MF: colours of triangles are left out"));
-    model_free(&m);
-    refuse(FILE_OF("t.3mf"), true, "colours of triangles are left out");
-    put_3mf("", base, " pid=\"7\" p1=\"0\"");
-    import_good(FILE_OF("t.3mf"), &m);
-    assert_string_equal(warnings, "");
-    assert_true(near3(m.materials[0].albedo, 1, 0, 0));
-    model_free(&m);
-    put_3mf("", base, " pid=\"7\" p1=\"0\"/><triangle v1=\"0\" v2=\"2\" v3=\"1\" pid=\"7\" p1=\"1\"");
-    import_good(FILE_OF("t.3mf"), &m);
-    assert_non_null(strstr(warnings, "several materials"));
-    model_free(&m);
-}
-
 static void case_embedded_texture(void **state) {
     model m;
     (void)state;
@@ -158,7 +135,6 @@ int main(void) {
         T(pictures_in_fbx_are_found_by_name),
         T(collada_lists_may_begin_with_space),
         T(spots_of_collada_have_one_angle),
-        T(colours_of_3mf_are_told_of),
         T(case_embedded_texture),
         T(cases_collada),
     };

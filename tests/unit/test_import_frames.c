@@ -1,5 +1,5 @@
 /* Unit and up axis of files that Assimp reads: its releases differ in what they apply of a file's axes, and none applies FBX's
- * or 3MF's unit. Each file is written here (foreign_lab.h); right is worked out by hand: the triangle in x and y, as long as
+ * or AMF's unit. Each file is written here (foreign_lab.h); right is worked out by hand: the triangle in x and y, as long as
  * the unit. */
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_frames"
 #include "foreign_lab.h"
@@ -115,33 +115,7 @@ static void collada_is_in_its_unit_and_on_its_axis(void **state) {
     model_free(&m);
 }
 
-/* ---- 3MF, AMF ---- */
-
-static void files_of_3mf_are_in_their_unit_and_z_is_up(void **state) {
-    static const struct {
-        const char *unit;
-        double metres;
-        unsigned by;
-    } rows[] = {{"", 0.001, FRAME_BY_FORMAT},
-                {"unit=\"millimeter\"", 0.001, FRAME_BY_FILE},
-                {"unit = 'inch'", 0.0254, FRAME_BY_FILE},
-                {"xml:lang=\"en-US\"\n unit=\"micron\"", 1e-6, FRAME_BY_FILE},
-                {"unit=\"foot\"", 0.3048, FRAME_BY_FILE},
-                {"unit=\"centimeter\"", 0.01, FRAME_BY_FILE},
-                {"unit=\"meter\"", 1, FRAME_BY_FILE}};
-    model m;
-    (void)state;
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        put_3mf(rows[i].unit, "", "");
-        import_good(FILE_OF("t.3mf"), &m);
-        box_is(&m, 0, 0, 0, 10 * rows[i].metres, 10 * rows[i].metres, 0);
-        frame_is(&m, rows[i].metres, FRAME_Z, rows[i].by, FRAME_BY_FORMAT);
-        assert_string_equal(warnings, "");
-        model_free(&m);
-    }
-    put_3mf("unit=\"cubit\"", "", "");
-    refuse(FILE_OF("t.3mf"), false, "has unit 'cubit', which is none");
-}
+/* ---- AMF ---- */
 
 static void files_of_amf_are_in_their_unit(void **state) {
     static const char amf[] =
@@ -227,7 +201,6 @@ int main(void) {
         T(a_unit_or_axes_that_are_none_are_told),
         T(the_scene_file_beats_unit_and_axis),
         T(collada_is_in_its_unit_and_on_its_axis),
-        T(files_of_3mf_are_in_their_unit_and_z_is_up),
         T(files_of_amf_are_in_their_unit),
         T(a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says),
         T(x3d_is_metres_and_y_up),

@@ -57,11 +57,7 @@ static bool add_scene(assimp_scene *a, const scene_mesh *mesh) {
     double place[12];
     a->im->embedded = a->ai->mNumTextures;
     if (!a->ai->mRootNode)
-        return import_fail(a->im, "has no nodes%s",
-                           import_has_suffix(a->im->file, ".3mf")
-                               ? ": an archive in ZIP64, as lib3mf writes it, is not read with libminizip of Debian 12; packed "
-                                 "again it is"
-                               : "");
+        return import_fail(a->im, "has no nodes");
     return assimp_frame(a, mesh, place) && import_begin_meshes(a->im, a->ai->mNumMeshes) && assimp_transparency(a) &&
            add_node(a, a->ai->mRootNode, place, 0) && add_strays(a, place);
 }

@@ -1,5 +1,5 @@
 /* Unit and up axis of files that Assimp reads. Its releases differ in what they apply themselves (FBX's axes from 5.3 on, but
- * not FBX's unit, nor 3MF's), so that what the file says is found here, and what a release has applied is known or taken back.
+ * not FBX's unit, nor AMF's), so that what the file says is found here, and what a release has applied is known or taken back.
  */
 #include "import/assimp/assimp_scene.h"
 #include <assimp/metadata.h>
@@ -21,15 +21,19 @@ static const struct aiMetadataEntry *entry(const assimp_scene *a, const char *ke
     return NULL;
 }
 
-/* The suffix goes first: the name that Assimp notes may come from the file (3MF that Assimp has written holds that of the
- * reader of the file before). */
+/* The suffix goes first: the name that Assimp notes may come from the file. */
 const char *assimp_reader(const assimp_scene *a) {
-    static const char *const by_suffix[][2] = {{".fbx", "Autodesk FBX"},  {".dae", "Collada"},
-                                               {".3mf", "3mf"},           {".amf", "Additive manufacturing"},
-                                               {".3ds", "Discreet 3DS"},  {".ase", "ASE"},
-                                               {".ask", "ASE"},           {".dxf", "Drawing Interchange"},
-                                               {".x3d", "Extensible 3D"}, {".x3db", "Extensible 3D"},
-                                               {".gltf", "glTF"},         {".glb", "glTF"}};
+    static const char *const by_suffix[][2] = {{".fbx", "Autodesk FBX"},
+                                               {".dae", "Collada"},
+                                               {".amf", "Additive manufacturing"},
+                                               {".3ds", "Discreet 3DS"},
+                                               {".ase", "ASE"},
+                                               {".ask", "ASE"},
+                                               {".dxf", "Drawing Interchange"},
+                                               {".x3d", "Extensible 3D"},
+                                               {".x3db", "Extensible 3D"},
+                                               {".gltf", "glTF"},
+                                               {".glb", "glTF"}};
     for (size_t i = 0; i < sizeof by_suffix / sizeof *by_suffix; i++)
         if (import_has_suffix(a->im->file, by_suffix[i][0]))
             return by_suffix[i][1];
@@ -125,16 +129,10 @@ static bool find_frame(assimp_scene *a, ai_frame *out) {
             out->stated = known[i].stated;
             out->applied = known[i].applied;
         }
-    if (begins(reader, "3mf")) {
-        if (!assimp_unit_3mf(a->im, &out->stated.unit, &stated))
-            return false;
-        out->stated.up = FRAME_Z; /* 3MF core specification, 3.3 */
-        out->stated.up_by = FRAME_BY_FORMAT;
-    } else if (begins(reader, "Additive manufacturing")) {
-        if (!assimp_unit_amf(a->im, &out->stated.unit, &stated))
-            return false;
-    } else
+    if (!begins(reader, "Additive manufacturing"))
         return true;
+    if (!assimp_unit_amf(a->im, &out->stated.unit, &stated))
+        return false;
     out->stated.unit_by = stated ? FRAME_BY_FILE : FRAME_BY_FORMAT;
     return true;
 }

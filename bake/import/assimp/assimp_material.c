@@ -52,7 +52,7 @@ static uint32_t wrap_of(enum aiTextureMapMode mode) {
 
 static void read_texture(const assimp_scene *a, material_use *use, const struct aiMaterial *ai) {
     static const enum aiTextureType types[2] = {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR};
-    for (int i = 0; i < 2 && !a->plain_colors; i++) {
+    for (int i = 0; i < 2; i++) {
         struct aiString path;
         enum aiTextureMapMode mode[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
         unsigned set = 0;

@@ -40,8 +40,8 @@ static bool say_rigid(assimp_scene *a, const struct aiMesh *mesh) {
 }
 
 /* Four floats a vertex; NULL: none, which Assimp has as black without opacity for AMF. */
-static const float *colors_of(const assimp_scene *a, const struct aiMesh *mesh) {
-    const float *color = a->plain_colors ? NULL : floats_of(mesh->mColors[0]);
+static const float *colors_of(const struct aiMesh *mesh) {
+    const float *color = floats_of(mesh->mColors[0]);
     for (size_t i = 0; color && i < 4 * (size_t)mesh->mNumVertices; i++)
         if (color[i] != 0.0f)
             return color;
@@ -62,7 +62,7 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]) {
                       .vertices = mesh->mNumVertices,
                       .position = {floats_of(mesh->mVertices), 3},
                       .normal = {floats_of(mesh->mNormals), 3},
-                      .color = {colors_of(a, mesh), 4},
+                      .color = {colors_of(mesh), 4},
                       .v_up = true, /* Assimp has it so for every format */
                       .material = mesh->mMaterialIndex};
     for (int i = 0; i < IMPORT_UV_SETS && i < AI_MAX_NUMBER_OF_TEXTURECOORDS; i++)

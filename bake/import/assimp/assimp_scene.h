@@ -22,7 +22,6 @@ typedef struct assimp_scene {
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
     unsigned lost_nodes; /* that were NULL in Assimp's tree */
-    bool plain_colors;   /* textures and vertex colours are left out: releases of Assimp read them differently */
 } assimp_scene;
 
 /* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
@@ -38,9 +37,8 @@ bool assimp_frame(assimp_scene *a, const scene_mesh *mesh, double place[12]);
 /* How Assimp's name of the reader that read the file begins, "Collada"; "" if it has none. */
 const char *assimp_reader(const assimp_scene *a);
 
-/* assimp_archive.c: metres a unit of a 3MF file, or of an AMF file that is no archive; the format's default, 0.001, where it
- * says none. Warns of what else a 3MF file has and is not done. False: the unit is none, or strict. */
-bool assimp_unit_3mf(importer *im, double *unit, bool *stated);
+/* assimp_amf.c: metres a unit of an AMF file that is no archive; the format's default, 0.001, where it says none. False: the
+ * unit is none. */
 bool assimp_unit_amf(importer *im, double *unit, bool *stated);
 
 /* assimp_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted, those
