@@ -215,7 +215,7 @@ void options_help(void) {
         "  --list[=json]         bakes nothing: meshes, materials, textures, lights and their units, cameras, who reads the "
         "files, extensions,\n"
         "                        what is not done\n"
-        "  --strict              a missing texture, what a glTF file says and is not done, a material of the scene file that "
+        "  --strict              a missing texture, what a mesh file says and is not done, a material of the scene file that "
         "no mesh has,\n"
         "                        is an error, not a warning\n"
         "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"

@@ -93,30 +93,33 @@ static bool refuse_empty(importer *im) {
     return import_fail(im, "has no triangle");
 }
 
-/* What became of the triangles that the reader has placed. */
-static bool settle_file(importer *im, uint32_t before) {
+/* Triangles that the reader has placed and that cannot be shown. */
+static bool say_dropped(importer *im) {
+    return (im->not_finite == 0 || import_not_done(im, "%llu triangles with positions that are not finite dropped",
+                                                   (unsigned long long)im->not_finite)) &&
+           (im->too_far == 0 || import_not_done(im, "%llu triangles with a vertex farther out than %g m dropped, one at %g m",
+                                                (unsigned long long)im->too_far, (double)IMPORT_FAR, im->farthest)) &&
+           (im->bad_index == 0 ||
+            import_not_done(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index)) &&
+           (im->bad_polygon == 0 ||
+            import_not_done(im, "%llu polygons with an index out of range or more than 1024 corners dropped",
+                            (unsigned long long)im->bad_polygon)) &&
+           (im->clear == 0 ||
+            import_not_done(im,
+                            "%llu triangles of transparent materials ('%.100s') are left as holes: transparency is not "
+                            "simulated; 'cutoff = 0' for a material in a scene file shows it",
+                            (unsigned long long)im->clear, im->clear_name));
+}
+
+/* What became of what the reader has placed. */
+static bool settle_file(importer *im, uint32_t triangles, uint64_t not_triangles) {
+    const uint64_t flat = im->m->not_triangles - not_triangles;
     im->m->not_finite += im->not_finite;
-    if (im->m->triangles == before && im->s->mesh_count == 1)
+    if (im->m->triangles == triangles && im->s->mesh_count == 1)
         return refuse_empty(im);
-    if (im->not_finite)
-        import_warn(im, "%llu triangles with positions that are not finite dropped", (unsigned long long)im->not_finite);
-    if (im->too_far)
-        import_warn(im, "%llu triangles with a vertex farther out than %g m dropped, one at %g m",
-                    (unsigned long long)im->too_far, (double)IMPORT_FAR, im->farthest);
-    if (im->bad_index)
-        import_warn(im, "%llu triangles with an index out of range dropped", (unsigned long long)im->bad_index);
-    if (im->bad_polygon)
-        import_warn(im, "%llu polygons with an index out of range or more than 1024 corners dropped",
-                    (unsigned long long)im->bad_polygon);
-    if (im->clear)
-        import_warn(im,
-                    "%llu triangles of transparent materials ('%.100s') are left as holes: transparency is not "
-                    "simulated; 'cutoff = 0' for a "
-                    "material in a scene file shows it",
-                    (unsigned long long)im->clear, im->clear_name);
-    if (im->m->triangles == before)
-        import_warn(im, "has no triangle");
-    return true;
+    if (!say_dropped(im) || (flat > 0 && !import_not_done(im, "%llu points and lines are left out", (unsigned long long)flat)))
+        return false;
+    return im->m->triangles > triangles || import_not_done(im, "has no triangle");
 }
 
 static bool check_there(importer *im) {
@@ -188,8 +191,10 @@ static bool read_by_format(importer *im, const scene_mesh *mesh) {
 }
 
 bool import_file(importer *im, const scene_mesh *mesh) {
-    const uint32_t before = im->m->triangles;
-    const bool fine = read_by_format(im, mesh) && list_meshes(im) && note_format(im) && settle_file(im, before);
+    const uint32_t triangles = im->m->triangles;
+    const uint64_t not_triangles = im->m->not_triangles;
+    const bool fine =
+        read_by_format(im, mesh) && list_meshes(im) && note_format(im) && settle_file(im, triangles, not_triangles);
     free(im->placed);
     im->placed = NULL;
     im->placed_count = 0;

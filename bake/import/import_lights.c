@@ -31,8 +31,7 @@ bool import_add_camera(importer *im, const model_camera *camera, const double fo
     model_camera c = *camera;
     double along[3] = {forward[0], forward[1], forward[2]};
     if (!finite_point(c.eye) || !normalise(along) || !normalise(c.up)) {
-        import_warn(im, "camera '%.100s' has no direction; it is left out", c.name);
-        return true;
+        return import_not_done(im, "camera '%.100s' has no direction; it is left out", c.name);
     }
     for (int k = 0; k < 3; k++)
         c.target[k] = c.eye[k] + along[k];
@@ -79,10 +78,8 @@ bool import_add_light(importer *im, const model_light *light, double widest) {
     model *m = im->m;
     model_light l = *light;
     const char *fault = settle_light(im, &l, widest);
-    if (fault) {
-        import_warn(im, "light '%.100s' %s; it is left out", l.name, fault);
-        return true;
-    }
+    if (fault)
+        return import_not_done(im, "light '%.100s' %s; it is left out", l.name, fault);
     size_t room = (size_t)m->light_count;
     if (!import_room(im, &m->lights, &room, room + 1, sizeof l))
         return false;

@@ -250,21 +250,21 @@ static bool make_normals(importer *im, instance *in) {
 }
 
 /* A vertex colour multiplies the albedo if it is the same all over the part. */
-static void constant_color(importer *im, const mesh_part *part, float tint[3]) {
+static bool constant_color(importer *im, const mesh_part *part, float tint[3]) {
     const float *c = part->color.at;
     tint[0] = tint[1] = tint[2] = 1.0f;
     if (!c)
-        return;
+        return true;
     for (size_t i = 0; i < part->vertices; i++) {
         const float *other = c + i * part->color.stride;
         if (!(other[0] == c[0] && other[1] == c[1] && other[2] == c[2])) {
-            if (!im->warned_colors)
-                import_warn(im, "vertex colours that vary over a mesh are left out");
+            const bool said = im->warned_colors;
             im->warned_colors = true;
-            return;
+            return said || import_not_done(im, "vertex colours that vary over a mesh are left out");
         }
     }
     memcpy(tint, c, 3 * sizeof *tint);
+    return true;
 }
 
 static bool add_instance(importer *im, instance *in) {
@@ -276,8 +276,7 @@ static bool add_instance(importer *im, instance *in) {
         sift_triangle(im, in, t);
     if (in->triangles == 0)
         return true;
-    constant_color(im, part, tint);
-    if (!import_material(im, part->material, tint, &use))
+    if (!constant_color(im, part, tint) || !import_material(im, part->material, tint, &use))
         return false;
     if (use->hole) {
         if (im->clear == 0)
@@ -292,9 +291,12 @@ static bool add_instance(importer *im, instance *in) {
         return false;
     const bool has_uv = use->uv_set < IMPORT_UV_SETS && part->uv[use->uv_set].at;
     if (im->m->materials[material].image >= 0 && !has_uv && !use->warned_uv) {
-        import_warn(im, "material '%.100s': mesh '%.100s' and perhaps others have no texture coordinates", use->m.name,
-                    part->name);
         use->warned_uv = true;
+        if (!import_not_done(im,
+                             "material '%.100s': mesh '%.100s' and perhaps others have no texture coordinates: of its "
+                             "texture they show one colour",
+                             use->m.name, part->name))
+            return false;
     }
     add_triangles(im, in, use, material);
     return true;

@@ -170,7 +170,7 @@ static void polygons_are_cut_whole(void **state) {
 static void points_and_lines_are_counted(void **state) {
     model m;
     (void)state;
-    import_text(CORNERS "p 1 2\nl 1 2 3 4\nf 1 2 3\nf 1 2\nf 1 3 4\n", "", &m);
+    import_text(CORNERS "p 1 2\nl 1 2 3 4\nf 1 2 3\nf 1 2\nf 1 3 4\n", "6 points and lines are left out", &m);
     assert_int_equal(m.not_triangles, 2 + 3 + 1);
     assert_true(m.triangles == 2 && fabs(area(&m) - 1.0) < 1e-6);
     model_free(&m);

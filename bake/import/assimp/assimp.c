@@ -40,9 +40,8 @@ static bool add_strays(assimp_scene *a, const double place[12]) {
             if (!assimp_place(a, i, world))
                 return false;
         }
-    if (strays > 0 && !import_has_suffix(a->im->file, ".raw"))
-        import_warn(a->im, "the mesh reader has lost the places of %u meshes; they stand at the origin", strays);
-    return true;
+    return strays == 0 || import_has_suffix(a->im->file, ".raw") ||
+           import_not_done(a->im, "the mesh reader has lost the places of %u meshes; they stand at the origin", strays);
 }
 
 /* What Assimp says, in one line. */
