@@ -115,6 +115,44 @@ static void collada_is_in_its_unit_and_on_its_axis(void **state) {
     model_free(&m);
 }
 
+/* XML collapses the white space round numbers and words; comments say nothing; the library's own asset is not the file's. */
+static void white_space_in_collada_means_nothing(void **state) {
+    static const struct {
+        const char *asset;
+        unsigned up;
+    } rows[] = {{"<unit name=\"x\" meter=\" 2\"/>", FRAME_Y},
+                {"<unit meter = '\n\t2e0 ' name=\"meter\"/><up_axis>\n Y_UP\n</up_axis>", FRAME_Y},
+                {"<!-- <unit meter=\"3\"/> --><unit meter=\"+2.\"/>", FRAME_Y},
+                {"<unit meter=\"2 \"/><up_axis>Z_UP\n</up_axis>", FRAME_Z}};
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        model m;
+        put_dae(rows[i].asset, rows[i].up == FRAME_Z ? "0 0 0 1 0 0 0 0 1" : "0 0 0 1 0 0 0 1 0", "");
+        import_good(FILE_OF("t.dae"), &m);
+        box_is(&m, 0, 0, 0, 2, 2, 0);
+        frame_is(&m, 2, rows[i].up, FRAME_BY_FILE, FRAME_BY_FILE);
+        assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+}
+
+static void units_and_axes_of_collada_that_are_none_are_told(void **state) {
+    static const char *const units[] = {"", " ", "abc", "0,5", "1.0f", "2 3", "-1", "0", "inf", "1e400", "0x2"};
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        char text[64];
+        (void)snprintf(text, sizeof text, "<unit meter=\"%s\"/>", units[i]);
+        put_dae(text, "0 0 0 1 0 0 0 1 0", "");
+        refuse(FILE_OF("t.dae"), false, "has a <unit> that is no positive number of metres");
+    }
+    put_dae("<up_axis>z_up</up_axis>", "0 0 0 1 0 0 0 1 0", "");
+    import_good(FILE_OF("t.dae"), &m);
+    assert_non_null(strstr(warnings, "its <up_axis> is none: y is taken as up"));
+    model_free(&m);
+    refuse(FILE_OF("t.dae"), true, "its <up_axis> is none");
+}
+
 /* ---- AMF ---- */
 
 static void files_of_amf_are_in_their_unit(void **state) {
@@ -157,17 +195,35 @@ static void a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says(voi
     model_free(&m);
 }
 
-static void x3d_is_metres_and_y_up(void **state) {
+static void put_x3d(const char *head) {
+    char text[1024];
+    (void)snprintf(text, sizeof text,
+                   "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile=\"Interchange\" version=\"3.3\">%s<Scene><Shape>"
+                   "<IndexedFaceSet coordIndex=\"0 1 2 -1\"><Coordinate point=\"0 0 0 1 0 0 0 1 0\"/></IndexedFaceSet>"
+                   "</Shape></Scene></X3D>\n",
+                   head);
+    put(FILE_OF("t.x3d"), text);
+}
+
+static void x3d_is_in_its_unit_and_y_is_up(void **state) {
+    static const struct {
+        const char *head;
+        double unit;
+        unsigned by;
+    } rows[] = {{"", 1, FRAME_BY_FORMAT},
+                {"<head><unit category=\"length\" name=\"inch\" conversionFactor=\"0.0254\"/></head>", 0.0254, FRAME_BY_FILE},
+                {"<head><unit category='angle' name='degree' conversionFactor='0.0174533'/></head>", 1, FRAME_BY_FORMAT}};
     model m;
     (void)state;
-    put(FILE_OF("t.x3d"),
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile=\"Interchange\" version=\"3.0\"><Scene><Shape>"
-        "<IndexedFaceSet coordIndex=\"0 1 2 -1\"><Coordinate point=\"0 0 0 1 0 0 0 1 0\"/></IndexedFaceSet>"
-        "</Shape></Scene></X3D>\n");
-    import_good(FILE_OF("t.x3d"), &m);
-    box_is(&m, 0, 0, 0, 1, 1, 0);
-    frame_is(&m, 1, FRAME_Y, FRAME_BY_FORMAT, FRAME_BY_FORMAT);
-    model_free(&m);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        put_x3d(rows[i].head);
+        import_good(FILE_OF("t.x3d"), &m);
+        box_is(&m, 0, 0, 0, rows[i].unit, rows[i].unit, 0);
+        frame_is(&m, rows[i].unit, FRAME_Y, rows[i].by, FRAME_BY_FORMAT);
+        model_free(&m);
+    }
+    put_x3d("<head><unit category=\"length\" name=\"x\" conversionFactor=\"-1\"/></head>");
+    refuse(FILE_OF("t.x3d"), false, "has a <unit> of lengths that is no positive number of metres");
 }
 
 static void frames_in_words(void **state) {
@@ -201,9 +257,11 @@ int main(void) {
         T(a_unit_or_axes_that_are_none_are_told),
         T(the_scene_file_beats_unit_and_axis),
         T(collada_is_in_its_unit_and_on_its_axis),
+        T(white_space_in_collada_means_nothing),
+        T(units_and_axes_of_collada_that_are_none_are_told),
         T(files_of_amf_are_in_their_unit),
         T(a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says),
-        T(x3d_is_metres_and_y_up),
+        T(x3d_is_in_its_unit_and_y_is_up),
         T(frames_in_words),
         T(cases_units),
     };

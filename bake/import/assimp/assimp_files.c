@@ -61,25 +61,14 @@ static FILE *open_plain(const char *path, size_t *size) {
     return file;
 }
 
-/* Without the space between a tag and what follows: XML's lists of numbers may begin with it (white space is collapsed: XML
- * Schema, 2), but Assimp 5.2 refuses it there, and Godot's exporter writes it. */
-static size_t drop_space(char *text, size_t size) {
-    size_t kept = 0;
-    bool after_tag = false;
-    for (size_t i = 0; i < size; i++) {
-        const char c = text[i];
-        if (after_tag && (c == ' ' || c == '\t' || c == '\r' || c == '\n'))
-            continue;
-        after_tag = c == '>';
-        text[kept++] = c;
-    }
-    return kept;
-}
-
-/* COLLADA's text in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
-static void mend_collada(plain_file *f, size_t bytes) {
+/* The text of COLLADA and X3D in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
+static void mend_text(assimp_scene *a, plain_file *f, size_t bytes, bool collada) {
     char *text = malloc(bytes + 1);
-    const size_t size = text && fread(text, 1, bytes, f->file) == bytes ? drop_space(text, bytes) : 0;
+    size_t size = text ? fread(text, 1, bytes, f->file) : 0;
+    if (size > 0 && size == bytes && collada)
+        size = assimp_mend_collada(a, text, size);
+    else if (size > 0 && size == bytes)
+        assimp_read_x3d(a, text, size);
     FILE *mended = size > 0 ? fmemopen(text, size, "rb") : NULL;
     if (!mended) {
         free(text);
@@ -104,8 +93,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     }
     plain->file = file;
     import_note_file(a->im, path, bytes);
-    if (import_has_suffix(path, ".dae"))
-        mend_collada(plain, bytes);
+    if (import_has_suffix(path, ".dae") || import_has_suffix(path, ".x3d"))
+        mend_text(a, plain, bytes, import_has_suffix(path, ".dae"));
     *f = (struct aiFile){.ReadProc = read_some,
                          .WriteProc = write_nothing,
                          .TellProc = tell,

@@ -87,7 +87,7 @@ static bool fbx_frame(assimp_scene *a, ai_frame *out) {
 }
 
 /* All releases scale by <unit>, then turn by <up_axis>, in the root node, which has no place of its own. */
-static bool collada_frame(const assimp_scene *a, ai_frame *out) {
+static bool collada_frame(assimp_scene *a, ai_frame *out) {
     const struct aiMatrix4x4 *m = &a->ai->mRootNode->mTransformation;
     const float unit = m->c3 > 0.0f ? m->c3 : m->a1; /* the axis that keeps its place: z, or x */
     out->stated = (model_frame){(double)unit,
@@ -96,7 +96,9 @@ static bool collada_frame(const assimp_scene *a, ai_frame *out) {
                                                 : FRAME_Y,
                                 FRAME_BY_FILE, FRAME_BY_FILE};
     out->applied = true;
-    return unit > 0.0f || import_fail(a->im, "has a <unit> that is no positive number of metres");
+    if (a->bad_unit || !(unit > 0.0f))
+        return import_fail(a->im, "has a <unit> that is no positive number of metres");
+    return !a->bad_axis || import_not_done(a->im, "its <up_axis> is none: y is taken as up");
 }
 
 /* Unit and axis that all files of a format have. */
@@ -129,6 +131,12 @@ static bool find_frame(assimp_scene *a, ai_frame *out) {
             out->stated = known[i].stated;
             out->applied = known[i].applied;
         }
+    if (begins(reader, "Extensible 3D") && a->bad_unit)
+        return import_fail(a->im, "has a <unit> of lengths that is no positive number of metres");
+    if (begins(reader, "Extensible 3D") && a->unit > 0.0) {
+        out->stated.unit = a->unit;
+        out->stated.unit_by = FRAME_BY_FILE;
+    }
     if (!begins(reader, "Additive manufacturing"))
         return true;
     if (!assimp_unit_amf(a->im, &out->stated.unit, &stated))

@@ -21,11 +21,18 @@ typedef struct assimp_scene {
     bool warned_morph, warned_bones;
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
-    unsigned lost_nodes; /* that were NULL in Assimp's tree */
+    double unit;             /* metres that the head of an X3D file says, or 0 */
+    bool bad_unit, bad_axis; /* what the file says of them is none */
+    unsigned lost_nodes;     /* that were NULL in Assimp's tree */
 } assimp_scene;
 
 /* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
 struct aiFileIO assimp_files(assimp_scene *a);
+
+/* assimp_text.c: the text of a COLLADA file as Assimp reads it right, in place; its new size. Sets a->bad_unit, bad_axis. */
+size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size);
+/* Sets a->unit, bad_unit by the text of an X3D file. */
+void assimp_read_x3d(assimp_scene *a, char *text, size_t size);
 
 /* assimp_tree.c: takes NULL out of the lists of Assimp's tree, or refuses it. */
 bool assimp_mend_tree(assimp_scene *a);
