@@ -193,6 +193,7 @@ static void what_is_not_to_be_printed_is_left_out_and_said(void **state) {
     assert_int_equal(m.triangles, 2);
     assert_non_null(strstr(warnings, "1 items of the build that are not to be printed are left out"));
     model_free(&m);
+    refuse(FILE_OF("t.3mf"), true, "1 items of the build");
     for (size_t i = 0; i < 3; i++) {
         char text[4096];
         (void)snprintf(
@@ -207,6 +208,7 @@ static void what_is_not_to_be_printed_is_left_out_and_said(void **state) {
         assert_int_equal(m.triangles, 2);
         assert_non_null(strstr(warnings, "2 objects that are supports or of type 'other' are left out"));
         model_free(&m);
+        refuse(FILE_OF("t.3mf"), true, "2 objects that are supports");
     }
 }
 
@@ -249,9 +251,10 @@ static void components_are_bounded(void **state) {
 /* ---- several model files ---- */
 
 static void objects_of_other_model_files_are_found(void **state) {
-    static const char other[] = "<model unit=\"centimeter\" " CORE_NS "><resources>" PLAIN_SQUARE(1) OBJECT(
-        "id=\"2\"",
-        "<components><component objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 1\"/></components>") "</resources><build><item objectid=\"1\"/></build></model>";
+    static const char other[] = "<model unit=\"centimeter\" " CORE_NS "><resources>" PLAIN_SQUARE(
+        1) "<object id=\"2\"><components><component "
+           "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 1\"/></components></object></resources><build><item "
+           "objectid=\"1\"/></build></model>";
     const lab_part more = LAB_TEXT_PART("3D/other.model", other);
     model m;
     (void)state;

@@ -253,10 +253,8 @@ bool threemf_resolve(threemf_file *f) {
     for (size_t i = 0; i < f->object_count; i++)
         if (f->objects[i].places > 0 && f->objects[i].triangles > 0 && !resolve_object(f, &f->objects[i]))
             return false;
-    if (f->bad_property > 0)
-        import_warn(f->im, "%llu triangles have a property that is not there: they are grey",
-                    (unsigned long long)f->bad_property);
-    return true;
+    return f->bad_property == 0 || import_not_done(f->im, "%llu triangles have a property that is not there: they are grey",
+                                                   (unsigned long long)f->bad_property);
 }
 
 /* ---- materials ---- */

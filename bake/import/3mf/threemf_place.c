@@ -66,12 +66,11 @@ bool threemf_find_places(threemf_file *f, const double stand[12]) {
         if (!visit(f, &f->items[i], 0, stand, 0))
             return false;
     turn_lists(f);
-    if (f->supports > 0)
-        import_warn(f->im, "%llu objects that are supports or of type 'other' are left out", (unsigned long long)f->supports);
-    if (f->not_printed > 0)
-        import_warn(f->im, "%llu items of the build that are not to be printed are left out",
-                    (unsigned long long)f->not_printed);
-    return true;
+    if (f->supports > 0 && !import_not_done(f->im, "%llu objects that are supports or of type 'other' are left out",
+                                            (unsigned long long)f->supports))
+        return false;
+    return f->not_printed == 0 || import_not_done(f->im, "%llu items of the build that are not to be printed are left out",
+                                                  (unsigned long long)f->not_printed);
 }
 
 /* ---- parts ---- */
