@@ -31,6 +31,7 @@ static void apply_override(importer *im, material_use *use) {
         if (strcmp(o->name, use->m.name) != 0)
             continue;
         im->override_used[i] = true;
+        use->has_plain = use->has_plain && !o->has_color;
         for (int k = 0; k < 3 && o->has_color; k++)
             use->m.albedo[k] = import_clamp((float)o->color[k], VIT_MAX_ALBEDO);
         for (int k = 0; k < 3 && o->has_emission; k++)
@@ -101,6 +102,8 @@ bool import_material_index(importer *im, material_use *use, uint32_t *index) {
         const bool seen = use->m.albedo[0] > 0 || use->m.albedo[1] > 0 || use->m.albedo[2] > 0 || use->m.cutoff > 0;
         if (use->image[0] && seen && !take_texture(im, use))
             return false;
+        if (use->m.image < 0 && use->has_plain)
+            memcpy(use->m.albedo, use->plain, sizeof use->plain);
         /* Without a hole there is no cut-out to pay for. */
         if (use->m.image < 0 || !has_alpha(&m->images[use->m.image], use->m.alpha, use->m.cutoff))
             use->m.cutoff = 0.0f;

@@ -66,8 +66,10 @@ typedef struct material_use {
     float
         alpha_by_letter; /* by the file's letter, where the reader took it otherwise; what the scene file's cutoff is held to */
     char image[SCENE_PATH]; /* file, or "*index" of an image in the mesh file; "" if none */
-    bool image_resolved;    /* `image` comes from the scene file: take it as it is */
-    int image_line;         /* there, for errors */
+    bool has_plain;         /* without the image the albedo is `plain` */
+    float plain[3];
+    bool image_resolved; /* `image` comes from the scene file: take it as it is */
+    int image_line;      /* there, for errors */
     unsigned uv_set;
     bool has_transform;
     double uv[6];   /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */

@@ -63,6 +63,52 @@ static void pictures_in_fbx_are_found_by_name(void **state) {
     }
 }
 
+/* A material of colour (0.5, 0.25, 0.125) with one picture, laid twice across. */
+#define FBX_TILED                                                                                                              \
+    "\tMaterial: 400, \"Material::paint\", \"\" {\n\t\tVersion: 102\n\t\tShadingModel: \"phong\"\n\t\tProperties70:  {\n"      \
+    "\t\t\tP: \"DiffuseColor\", \"Color\", \"\", \"A\",0.5,0.25,0.125\n\t\t}\n\t}\n"                                           \
+    "\tTexture: 500, \"Texture::t\", \"\" {\n\t\tType: \"TextureVideoClip\"\n\t\tVersion: 202\n"                               \
+    "\t\tTextureName: \"Texture::t\"\n\t\tFileName: \"image.tga\"\n\t\tRelativeFilename: \"image.tga\"\n"                      \
+    "\t\tModelUVTranslation: 0,0\n\t\tModelUVScaling: 2,1\n\t}\n"
+#define FBX_MATERIAL "\tC: \"OO\",400,200\n"
+#define FBX_MAP(property) "\tC: \"OP\",500,400, \"" property "\"\n"
+
+static void a_picture_stands_in_for_the_colour_in_fbx(void **state) {
+    model m;
+    (void)state;
+    put_image(FILE_OF("image.tga"), 255);
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, FBX_TILED, FBX_MATERIAL);
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_true(near3(m.materials[0].albedo, 0.5, 0.25, 0.125));
+    assert_string_equal(warnings, "");
+    model_free(&m);
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, FBX_TILED, FBX_MATERIAL FBX_MAP("DiffuseColor"));
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_true(m.materials[0].image == 0 && near3(m.materials[0].albedo, 1, 1, 1));
+    model_free(&m);
+    refuse(FILE_OF("t.fbx"), true, "offset, scale and rotation of textures are left out (material 'paint'");
+    assert_int_equal(remove(FILE_OF("image.tga")), 0); /* it is missing: the plain colour is what the file says */
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_true(m.materials[0].image == -1 && near3(m.materials[0].albedo, 0.5, 0.25, 0.125));
+    model_free(&m);
+}
+
+static void maps_of_other_things_are_said_to_be_left_out(void **state) {
+    static const char *const properties[2][2] = {{FBX_MAP("NormalMap"), "bump, normal and displacement maps are left out"},
+                                                 {FBX_MAP("SpecularColor"), "maps of highlights and reflections are left out"}};
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        model m;
+        char connections[256];
+        (void)snprintf(connections, sizeof connections, FBX_MATERIAL "%s", properties[i][0]);
+        put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, FBX_TILED, connections);
+        import_good(FILE_OF("t.fbx"), &m);
+        assert_non_null(strstr(warnings, properties[i][1]));
+        model_free(&m);
+        refuse(FILE_OF("t.fbx"), true, properties[i][1]);
+    }
+}
+
 static void collada_lists_may_begin_with_space(void **state) {
     model m;
     (void)state;
@@ -133,6 +179,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         T(spots_of_fbx_have_full_angles_and_stand_where_the_axes_put_them),
         T(pictures_in_fbx_are_found_by_name),
+        T(a_picture_stands_in_for_the_colour_in_fbx),
+        T(maps_of_other_things_are_said_to_be_left_out),
         T(collada_lists_may_begin_with_space),
         T(spots_of_collada_have_one_angle),
         T(case_embedded_texture),

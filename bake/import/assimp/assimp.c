@@ -114,7 +114,12 @@ static bool is_any(const uint8_t *head, size_t size) {
 }
 
 static const char *const suffixes[] = {NULL};
-static const char *const cannot[] = {"animations", "morph targets and skins", "vertex colours that vary", NULL};
+static const char *const cannot[] = {"animations",
+                                     "morph targets and skins",
+                                     "highlights, mirrors and glass",
+                                     "bump, normal and emissive maps",
+                                     "vertex colours that vary",
+                                     NULL};
 const import_format assimp_format = {.name = "Assimp",
                                      .suffixes = suffixes,
                                      .cannot = cannot,

@@ -13,12 +13,16 @@ typedef struct polygon_cut {
     size_t triangles;
 } polygon_cut;
 
+/* What is said once a file, of all its materials. */
+typedef enum assimp_remark { ASSIMP_SAID_BUMP, ASSIMP_SAID_SPECULAR, ASSIMP_SAID_TRANSFORM, ASSIMP_SAID_LAYERS } assimp_remark;
+
 /* A file that Assimp reads; importer.reader. */
 typedef struct assimp_scene {
     importer *im;
     const struct aiScene *ai;
     bool inverse; /* the file's opacities are transparencies (assimp_transparency.c) */
     bool warned_morph, warned_bones;
+    unsigned said;     /* a bit an assimp_remark */
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
     double unit;             /* metres that the head of an X3D file says, or 0 */
@@ -60,6 +64,11 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]);
 
 /* assimp_material.c: as import_format.material has it. */
 bool assimp_material(importer *im, material_use *use);
+/* assimp_maps.c: the picture of a material's colour, how it repeats and which coordinates it has. False: strict, or out of
+ * memory. */
+bool assimp_color_map(assimp_scene *a, material_use *use, const struct aiMaterial *ai);
+/* Says which other maps are left out. */
+bool assimp_other_maps(assimp_scene *a, const material_use *use, const struct aiMaterial *ai);
 /* What import_image() takes for a texture of that path: "*N" if the file holds it. */
 void assimp_image_name(const assimp_scene *a, const struct aiString *path, char out[SCENE_PATH]);
 /* `count` floats, if there are as many; keys are macros of three arguments, key, type, index. */
