@@ -55,7 +55,8 @@ static const int y_up[6] = {0, 1, 1, 1, 2, 1}, z_up[6] = {0, 1, 2, 1, 1, -1};
 
 #define DAE_UNIT(metres, up) "<unit name=\"u\" meter=\"" metres "\"/><up_axis>" up "_UP</up_axis>"
 
-static inline void put_dae(const char *asset, const char *positions, const char *more) {
+/* t.dae; `more` goes before the geometries, `nodes` into the scene. */
+static inline void put_dae_with(const char *asset, const char *positions, const char *more, const char *nodes) {
     char text[4096];
     const int used = snprintf(
         text, sizeof text,
@@ -67,9 +68,13 @@ static inline void put_dae(const char *asset, const char *positions, const char 
         "semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 1 2</p></triangles></mesh></geometry></library_geometries>"
         "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\"><instance_geometry url=\"#g\"/></node>%s</visual_scene>"
         "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
-        asset, more, positions, *more ? "<node id=\"lamp\" name=\"lamp\"><instance_light url=\"#l\"/></node>" : "");
+        asset, more, positions, nodes);
     assert_true(used > 0 && (size_t)used < sizeof text);
     put(FILE_OF("t.dae"), text);
+}
+
+static inline void put_dae(const char *asset, const char *positions, const char *more) {
+    put_dae_with(asset, positions, more, *more ? "<node id=\"lamp\" name=\"lamp\"><instance_light url=\"#l\"/></node>" : "");
 }
 
 #endif

@@ -26,13 +26,18 @@ static bool finite_point(const double p[3]) {
     return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
-bool import_add_camera(importer *im, const model_camera *camera, const double forward[3]) {
+bool import_add_camera(importer *im, const model_camera *camera, const double forward[3], bool orthographic) {
     model *m = im->m;
     model_camera c = *camera;
     double along[3] = {forward[0], forward[1], forward[2]};
     if (!finite_point(c.eye) || !normalise(along) || !normalise(c.up)) {
         return import_not_done(im, "camera '%.100s' has no direction; it is left out", c.name);
     }
+    c.fov = orthographic || !(c.fov > 1.0 && c.fov < 170.0) ? 0.0 : c.fov;
+    if (c.fov == 0.0 &&
+        !import_not_done(im, "camera '%.100s' %s: its view is a perspective of 60 degrees", c.name,
+                         orthographic ? "is orthographic, which ours are not" : "has no field of view that ours could have"))
+        return false;
     for (int k = 0; k < 3; k++)
         c.target[k] = c.eye[k] + along[k];
     size_t room = (size_t)m->camera_count;

@@ -229,9 +229,9 @@ void import_settle_holes(const importer *im, material_use *use);
 
 /* ---- import_lights.c ---- */
 
-/* Adds a camera of which name, parent, eye, up and fov (0: none that ours could have) are set; it looks along `forward`. up and
- * forward are of any length. What has no direction is left out with a warning. */
-bool import_add_camera(importer *im, const model_camera *camera, const double forward[3]);
+/* Adds a camera of which name, parent, eye, up and fov are set; it looks along `forward`. up and forward are of any length.
+ * What has no direction is left out with a warning; an fov that is not between 1 and 170 degrees becomes 0, with one, too. */
+bool import_add_camera(importer *im, const model_camera *camera, const double forward[3], bool orthographic);
 /* Adds a light of which name, parent, kind, position, direction (any length), inner, outer (degrees from the axis; most outer:
  * `widest`), stated and range are set. What cannot be one of ours is left out with a warning. */
 bool import_add_light(importer *im, const model_light *light, double widest);

@@ -150,6 +150,53 @@ static void spots_of_collada_have_one_angle(void **state) {
     }
 }
 
+/* A camera of COLLADA, below a node of its own. */
+static void camera_of_collada(const char *optics, const char *id, double fov, const char *words) {
+    char more[1024];
+    model m;
+    (void)snprintf(more, sizeof more,
+                   "<library_cameras><camera id=\"other\"><optics><technique_common><perspective><yfov>11</yfov></perspective>"
+                   "</technique_common></optics></camera><camera id=\"%s\"><optics><technique_common>%s</technique_common>"
+                   "</optics></camera></library_cameras><library_nodes><node id=\"empty\"/></library_nodes>",
+                   id, optics);
+    put_dae_with(DAE_UNIT("1", "Y"), "0 0 0 1 0 0 0 1 0", more,
+                 "<node id=\"up\"><node id=\"a\"><instance_camera url=\"#other\"/></node>"
+                 "<node id=\"cam\" name=\"eye\"><translate>0 0 3</translate><instance_camera url=\"#c\"/></node></node>");
+    import_good(FILE_OF("t.dae"), &m);
+    const model_camera *c = model_camera_named(&m, "cam"), *other = model_camera_named(&m, "a");
+    assert_true(c && other && fabs(c->fov - fov) < 1e-4 && fabs(other->fov - 11.0) < 1e-9);
+    model_free(&m);
+    if (*words ? !strstr(warnings, words) : warnings[0] != '\0')
+        fail_msg("'%s' is not '%s'", warnings, words);
+    if (*words)
+        refuse(FILE_OF("t.dae"), true, words);
+}
+
+static void cameras_of_collada_keep_their_fields_of_view(void **state) {
+    (void)state;
+    camera_of_collada("<perspective><yfov sid=\"y\"> 40 </yfov><aspect_ratio>2</aspect_ratio></perspective>", "c", 40.0, "");
+    /* tan(45 degrees) / 1.5 is the tangent of half of 67.380135 degrees */
+    camera_of_collada("<perspective><xfov>90</xfov><aspect_ratio>1.5</aspect_ratio></perspective>", "c", 67.380135, "");
+    camera_of_collada("<orthographic><ymag>2</ymag></orthographic>", "c", 0.0, "camera 'cam' is orthographic");
+    camera_of_collada("<perspective><yfov>0</yfov></perspective>", "c", 0.0, "camera 'cam' has no field of view");
+}
+
+/* Half of it, or all, by the release of Assimp. */
+static void cameras_of_fbx_keep_their_fields_of_view(void **state) {
+    model m;
+    (void)state;
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1,
+            "\tNodeAttribute: 600, \"NodeAttribute::c\", \"Camera\" {\n\t\tTypeFlags: \"Camera\"\n\t\tProperties70:  {\n"
+            "\t\t\tP: \"AspectWidth\", \"double\", \"Number\", \"\",150\n"
+            "\t\t\tP: \"AspectHeight\", \"double\", \"Number\", \"\",100\n"
+            "\t\t\tP: \"FieldOfView\", \"FieldOfView\", \"\", \"A\",90\n\t\t}\n\t}\n"
+            "\tModel: 601, \"Model::eye\", \"Camera\" {\n\t\tVersion: 232\n\t}\n",
+            "\tC: \"OO\",601,0\n\tC: \"OO\",600,601\n");
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_true(m.camera_count == 1 && fabs(m.cameras[0].fov - 67.380135) < 1e-4);
+    model_free(&m);
+}
+
 static void case_embedded_texture(void **state) {
     model m;
     (void)state;
@@ -183,6 +230,8 @@ int main(void) {
         T(maps_of_other_things_are_said_to_be_left_out),
         T(collada_lists_may_begin_with_space),
         T(spots_of_collada_have_one_angle),
+        T(cameras_of_collada_keep_their_fields_of_view),
+        T(cameras_of_fbx_keep_their_fields_of_view),
         T(case_embedded_texture),
         T(cases_collada),
     };

@@ -4,6 +4,7 @@
 #include "common/strict_math.h"
 #include <assimp/camera.h>
 #include <assimp/light.h>
+#include <assimp/version.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,20 +21,30 @@ static void take_names(const struct aiNode *node, char name[SCENE_NAME], char pa
 }
 
 /* Vertical angle in degrees; 0 if the file states none, or nothing that a camera could have. */
-static double vertical_fov(const struct aiCamera *c) {
-    const double across = (double)c->mHorizontalFOV, aspect = (double)c->mAspect;
+static double vertical_fov(const assimp_scene *a, const struct aiCamera *c, bool *orthographic) {
+    const bool fbx = strncmp(assimp_reader(a), "Autodesk FBX", 12) == 0;
+    *orthographic = c->mOrthographicWidth > 0.0f;
+    if (strcmp(assimp_reader(a), "Collada") == 0)
+        return assimp_collada_fov(a->im, c->mName.data, orthographic);
+    double across = (double)c->mHorizontalFOV;
+    /* Of FBX it is the whole angle up to 5.2, half of it from 5.3 on, and 1 degree where the file states none. */
+    if (fbx && (aiGetVersionMajor() > 5 || aiGetVersionMinor() > 2))
+        across *= 2.0;
+    const double aspect = (double)c->mAspect;
     const double up = aspect > 0.0 ? 2.0 * strict_atan(strict_tan(0.5 * across) / aspect) : across;
     const double degrees = up * 180.0 / PI;
-    return degrees > 1.0 && degrees < 170.0 ? degrees : 0.0;
+    return !(fbx && across < 1.001 * PI / 180.0) && degrees < 170.0 ? degrees : 0.0;
 }
 
 bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double world[12]) {
     for (unsigned i = 0; i < a->ai->mNumCameras; i++) {
         const struct aiCamera *c = a->ai->mCameras[i];
-        model_camera camera = {.fov = vertical_fov(c)};
+        model_camera camera = {.fov = 0.0};
         double place[3], look[3], up[3], forward[3];
+        bool orthographic;
         if (strcmp(c->mName.data, node->mName.data) != 0)
             continue;
+        camera.fov = vertical_fov(a, c, &orthographic);
         take(&c->mPosition, place);
         take(&c->mLookAt, look);
         take(&c->mUp, up);
@@ -41,12 +52,7 @@ bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double wor
         import_transform_vector(world, look, forward);
         import_transform_vector(world, up, camera.up);
         take_names(node, camera.name, camera.parent);
-        if (c->mOrthographicWidth > 0.0f &&
-            !import_not_done(a->im,
-                             "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
-                             c->mName.data))
-            return false;
-        if (!import_add_camera(a->im, &camera, forward))
+        if (!import_add_camera(a->im, &camera, forward, orthographic))
             return false;
     }
     return true;

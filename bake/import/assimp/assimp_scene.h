@@ -80,6 +80,8 @@ bool assimp_transparency(assimp_scene *a);
 float assimp_opacity(const assimp_scene *a, const struct aiMaterial *ai);
 float assimp_stated_opacity(const struct aiMaterial *ai);
 
+/* assimp_collada.c: vertical field of view in degrees of the camera that hangs on the node of this id; 0: the file has none. */
+double assimp_collada_fov(importer *im, const char *node, bool *orthographic);
 /* assimp_lights.c: the cameras and lights that hang on `node`, whose place in the world is `world` (3 x 4). */
 bool assimp_cameras(assimp_scene *a, const struct aiNode *node, const double world[12]);
 bool assimp_lights(assimp_scene *a, const struct aiNode *node, const double world[12]);

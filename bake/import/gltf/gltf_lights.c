@@ -28,13 +28,8 @@ bool gltf_add_camera(gltf_file *g, const gltf_place *place, const double world[1
     import_transform_point(world, origin, camera.eye);
     import_transform_vector(world, ahead, forward);
     import_transform_vector(world, above, camera.up);
-    const double fov = gltf_number(json_object_get(json, "perspective"), "yfov", 0.0) * 180.0 / PI;
-    camera.fov = fov > 1.0 && fov < 170.0 ? fov : 0.0;
-    if (strcmp(gltf_text(json, "type", ""), "orthographic") == 0 &&
-        !import_not_done(g->im, "camera '%.100s' is orthographic, which ours are not: its view is a perspective of 60 degrees",
-                         camera.name))
-        return false;
-    return import_add_camera(g->im, &camera, forward);
+    camera.fov = gltf_number(json_object_get(json, "perspective"), "yfov", 0.0) * 180.0 / PI;
+    return import_add_camera(g->im, &camera, forward, strcmp(gltf_text(json, "type", ""), "orthographic") == 0);
 }
 
 static bool kind_of(const char *type, int *kind) {
