@@ -58,7 +58,7 @@ LIBS_RUNTIME := $(if $(filter 0,$(OPENCL)),,-lOpenCL) -lpthread -lm
 LIBS_PLAY := -lpng $(LIBS_RUNTIME)
 # Open MPI, if it is installed, spreads references over machines (bake/reference/spread.h).
 LIBS_COST := $(shell mpicc --showme:link 2>/dev/null)
-LIBS_BAKE := -lembree$(EMBREE) -lassimp -ljansson -ldraco -lmeshoptimizer -lwebp -lzip -lexpat -lconfig -lpng -lstdc++ -lpthread -lm
+LIBS_BAKE := -lembree$(EMBREE) -lassimp -ljansson -ldraco -lmeshoptimizer -lwebp -lzip -lxml2 -lconfig -lpng -lstdc++ -lpthread -lm
 
 # The device `host`: runtime/host/kernels.c once for each instruction set, best first, and each number of lanes.
 HOST_LANES := 1 8 16
@@ -123,6 +123,7 @@ $(B)/report_files.o: $(B)/report_files.c
 	$(CC) $(CFLAGS_ALL) -c $< -o $@
 $(B)/kernel_sources.o: CFLAGS_ALL += -Iruntime -Wno-overlength-strings
 $(B)/bake/%.o: CFLAGS_ALL += -Ibake -DVIT_EMBREE=$(EMBREE)
+$(B)/bake/import/3mf/threemf_xml.o: CFLAGS_ALL += -isystem /usr/include/libxml2
 ifneq ($(LIBS_COST),)
 $(B)/bake/reference/spread.o: CFLAGS_ALL += -DVIT_MPI=1 $(patsubst -I%,-isystem %,$(shell mpicc --showme:compile))
 endif

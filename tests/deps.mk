@@ -1,6 +1,6 @@
 # What a machine needs, and what single targets need beside it; nothing happens where it is all there. Debian 12 and 13, Ubuntu 24.04.
 DEPS := make gcc g++ libc6-dev $(if $(filter 0,$(OPENCL)),,ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd) libassimp-dev libembree-dev libstb-dev \
-        libconfig-dev libpng-dev libjansson-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libzip-dev libexpat1-dev libxxhash-dev libcmocka-dev gnuplot-nox
+        libconfig-dev libpng-dev libjansson-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libzip-dev libxml2-dev libxxhash-dev libcmocka-dev gnuplot-nox
 FUZZ_DEPS := clang libclang-rt-dev
 LINT_DEPS := clang clang-format clang-tidy cppcheck
 COVERAGE_DEPS := gcovr

@@ -2,7 +2,7 @@
 # has its stamp in build/lint, so that a second run looks at what has changed. stb is not ours. Layout: tests/format.sh; the kernels' divisions:
 # tests/float_divisions.sh.
 LINTED := $(filter-out bake/import/stb_image.c bake/radiosity/stb_dxt.c,$(RUNTIME) $(PLAY) $(BAKE) $(SCENES))
-LINT_FLAGS := $(filter -D% -I%,$(BASE)) -Ibake -Iruntime -I$(B) -DVIT_EMBREE=$(EMBREE)
+LINT_FLAGS := $(filter -D% -I%,$(BASE)) -Ibake -Iruntime -I$(B) -DVIT_EMBREE=$(EMBREE) -isystem /usr/include/libxml2
 LINT_STAMPS := $(LINTED:%.c=build/lint/%.ok)
 # Not found by cppcheck: that a setting's list takes over a block through memcpy(), that a status guards a structure, that an error's
 # text is written before it is read, that a file's bytes mean that it is open. It takes pow() in a list of initialisers for a call without

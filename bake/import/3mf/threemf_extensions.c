@@ -26,22 +26,22 @@ static const struct extension {
 };
 
 /* NULL: of nobody that is known here. */
-static const struct extension *known(const char *uri, size_t length) {
+static const struct extension *known(const char *uri) {
     for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-        if (strlen(extensions[i].uri) == length && memcmp(extensions[i].uri, uri, length) == 0)
+        if (strcmp(extensions[i].uri, uri) == 0)
             return &extensions[i];
     return NULL;
 }
 
 /* The model's entry for it; NULL: out of memory. */
-static model_extension *entry(threemf_file *f, const char *uri, size_t length) {
-    const struct extension *e = known(uri, length);
+static model_extension *entry(threemf_file *f, const char *uri) {
+    const struct extension *e = known(uri);
     model *m = f->im->m;
     model_extension fresh = {.file = f->im->file_index, .read = e && e->how != UNKNOWN};
     if (e)
         (void)snprintf(fresh.name, sizeof fresh.name, "%s", e->name);
     else
-        (void)snprintf(fresh.name, sizeof fresh.name, "%.*s", length < 60 ? (int)length : 60, uri);
+        (void)snprintf(fresh.name, sizeof fresh.name, "%.60s", uri);
     for (int i = 0; i < m->extension_count; i++)
         if (m->extensions[i].file == fresh.file && strcmp(m->extensions[i].name, fresh.name) == 0)
             return &m->extensions[i];
@@ -56,8 +56,8 @@ static model_extension *entry(threemf_file *f, const char *uri, size_t length) {
     return &m->extensions[m->extension_count - 1];
 }
 
-bool threemf_note_extension(threemf_file *f, const char *uri, size_t length, bool required) {
-    model_extension *e = entry(f, uri, length);
+bool threemf_note_extension(threemf_file *f, const char *uri, bool required) {
+    model_extension *e = entry(f, uri);
     if (!e)
         return false;
     const bool fresh = required && !e->required;
@@ -81,11 +81,10 @@ bool threemf_is_new(threemf_file *f, const char *name) {
 }
 
 bool threemf_leave_out(threemf_file *f, const threemf_element *e) {
-    const size_t length = strcspn(e->uri, "|");
-    const struct extension *of = known(e->uri, length);
+    const struct extension *of = known(e->uri);
     char name[64];
     (void)snprintf(name, sizeof name, "element '%.40s'", e->name);
-    if (e->ns == THREEMF_FOREIGN && !threemf_note_extension(f, e->uri, length, false))
+    if (e->ns == THREEMF_FOREIGN && !threemf_note_extension(f, e->uri, false))
         return false;
     if ((of && of->how == HARMLESS) || !threemf_is_new(f, name))
         return true;
@@ -95,8 +94,7 @@ bool threemf_leave_out(threemf_file *f, const threemf_element *e) {
 }
 
 bool threemf_leave_out_attribute(threemf_file *f, const char *name) {
-    const char *bar = strrchr(name, '|');
     char what[64];
-    (void)snprintf(what, sizeof what, "attribute '%.40s'", bar ? bar + 1 : name);
+    (void)snprintf(what, sizeof what, "attribute '%.40s'", name);
     return !threemf_is_new(f, what) || import_not_done(f->im, "%s of triangles is left out", what);
 }

@@ -171,37 +171,47 @@ typedef enum threemf_ns {
     THREEMF_FOREIGN
 } threemf_ns;
 
-/* An element; `attributes` are names and values in turn, NULL at the end, names with a namespace being "URI|name". */
+typedef struct threemf_attribute_value {
+    const char *name, *uri, *value; /* uri: of the namespace, or "" */
+} threemf_attribute_value;
+
 typedef struct threemf_element {
     threemf_ns ns;
-    const char *uri; /* of the namespace, not ended: up to '|' */
+    const char *uri; /* of the namespace, or "" */
     const char *name;
-    const char *const *attributes;
+    const threemf_attribute_value *attributes;
+    size_t count;
 } threemf_element;
 
 typedef struct threemf_xml threemf_xml;
 struct threemf_xml {
     threemf_file *f;
     const char *part;
-    void *parser; /* XML_Parser */
+    void *parser; /* xmlParserCtxt */
+    zip_file_t *from;
     /* False: it has failed, and said why. Where `skip` is set, the elements in it are passed over. */
     bool (*begin)(threemf_xml *x, const threemf_element *e, bool *skip);
     void (*end)(threemf_xml *x);
     /* A prefix of the root element's. */
     bool (*prefix)(threemf_xml *x, const char *prefix, const char *uri);
     void *user;
-    bool failed;
-    unsigned depth, skipped; /* elements that are open; of those, that are passed over */
+    bool failed, damaged;
+    unsigned depth, skipped;             /* elements that are open; of those, that are passed over */
+    threemf_attribute_value *attributes; /* of the element that begins */
+    char *values;
+    size_t attribute_room, value_room;
+    const char *last_uri;
+    threemf_ns last_ns;
 };
 
 /* Reads part `name` of the archive; x->f and the functions are set. */
 bool threemf_read_xml(threemf_xml *x, const char *name);
 /* import_fail() with part and line. */
 bool threemf_wrong(threemf_xml *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
-threemf_ns threemf_namespace(const char *uri, size_t length);
+threemf_ns threemf_namespace(const char *uri); /* "": none */
 /* Value of the attribute without a namespace; NULL: it is not there. */
 const char *threemf_attribute(const threemf_element *e, const char *name);
-/* Likewise of the production extension's, which has no namespace in some files. */
+/* Likewise one of the production extension's. */
 const char *threemf_production(const threemf_element *e, const char *name);
 /* The whole text, but for blanks round it, as an index: 0..2^31 - 1. */
 bool threemf_index(const char *text, uint32_t *out);
@@ -229,7 +239,7 @@ const threemf_resource *threemf_find(const threemf_file *f, uint32_t part, uint3
 /* ---- threemf_extensions.c ---- */
 
 /* The extension of this namespace is used or required (Core 2.3.1); false: it is required and not read. */
-bool threemf_note_extension(threemf_file *f, const char *uri, size_t length, bool required);
+bool threemf_note_extension(threemf_file *f, const char *uri, bool required);
 /* Tells once that such elements, or such attributes of triangles, are left out, if that changes a picture; strict: fails. */
 bool threemf_leave_out(threemf_file *f, const threemf_element *e);
 bool threemf_leave_out_attribute(threemf_file *f, const char *name);

@@ -78,7 +78,7 @@ static bool read_required(threemf_xml *x, const char *list) {
                 uri = r->prefixes[i].uri;
         if (!uri)
             return threemf_wrong(x, "requires an extension '%.*s' that has no namespace", length < 40 ? (int)length : 40, at);
-        if (threemf_namespace(uri, strlen(uri)) != THREEMF_CORE && !threemf_note_extension(x->f, uri, strlen(uri), true))
+        if (threemf_namespace(uri) != THREEMF_CORE && !threemf_note_extension(x->f, uri, true))
             return false;
         at += length;
     }
@@ -143,14 +143,14 @@ static bool add_vertex(threemf_xml *x, const threemf_element *e) {
     if (!import_room(x->f->im, &o->position, &o->vertex_room, o->vertices + 1, 3 * sizeof *o->position))
         return false;
     float *to = o->position + 3 * o->vertices;
-    for (const char *const *a = e->attributes; *a; a += 2) {
-        const unsigned k = (unsigned)(a[0][0] - 'x');
-        const char *at = a[1];
+    for (size_t i = 0; i < e->count; i++) {
+        const char *name = e->attributes[i].name, *at = e->attributes[i].value;
+        const unsigned k = (unsigned)(name[0] - 'x');
         double value;
-        if (k > 2 || a[0][1])
+        if (k > 2 || name[1] || *e->attributes[i].uri)
             continue;
         if (!threemf_next_number(&at, true, &value) || *at)
-            return threemf_wrong(x, "%s '%.40s' of a vertex is no number", a[0], a[1]);
+            return threemf_wrong(x, "%s '%.40s' of a vertex is no number", name, e->attributes[i].value);
         to[k] = (float)value;
         has |= 1u << k;
     }
@@ -177,10 +177,11 @@ static bool add_triangle(threemf_xml *x, const threemf_element *e) {
     threemf_object *o = object(x);
     uint32_t value[7];
     memset(value, 0xff, sizeof value); /* THREEMF_NONE */
-    for (const char *const *a = e->attributes; *a; a += 2) {
-        const unsigned k = slot(a[0]);
-        if (k == 7 ? !threemf_leave_out_attribute(x->f, a[0]) : !threemf_index(a[1], &value[k]))
-            return k == 7 ? false : threemf_wrong(x, "%s '%.40s' of a triangle is no index", a[0], a[1]);
+    for (size_t i = 0; i < e->count; i++) {
+        const threemf_attribute_value *a = &e->attributes[i];
+        const unsigned k = *a->uri ? 7 : slot(a->name);
+        if (k == 7 ? !threemf_leave_out_attribute(x->f, a->name) : !threemf_index(a->value, &value[k]))
+            return k == 7 ? false : threemf_wrong(x, "%s '%.40s' of a triangle is no index", a->name, a->value);
     }
     for (unsigned k = 0; k < 3; k++)
         if (value[k] == THREEMF_NONE)
@@ -242,7 +243,7 @@ static bool read_child(threemf_xml *x, const threemf_element *e, threemf_child *
     const int has = threemf_read_index(x, e, "objectid", &out->id);
     if (has <= 0)
         return has < 0 ? false : threemf_wrong(x, "<%s> has no objectid", e->name);
-    if (path && (!threemf_note_extension(x->f, production, sizeof production - 1, false) || !part_of(x->f, path, &out->part)))
+    if (path && (!threemf_note_extension(x->f, production, false) || !part_of(x->f, path, &out->part)))
         return false;
     return read_transform(x, e, out->transform);
 }
@@ -353,7 +354,7 @@ static bool begin(threemf_xml *x, const threemf_element *e, bool *skip) {
         return true;
     /* No rule leads deeper than model, resources, object, mesh, triangles, triangle. */
     r->in[r->depth++] = to->to;
-    if (in == RESOURCES && e->ns == THREEMF_MATERIAL && !threemf_note_extension(x->f, e->uri, strcspn(e->uri, "|"), false))
+    if (in == RESOURCES && e->ns == THREEMF_MATERIAL && !threemf_note_extension(x->f, e->uri, false))
         return false;
     return !to->begin || to->begin(x, e);
 }

@@ -1,63 +1,61 @@
-/* Parts of the archive through expat, piece by piece: no part is ever in memory as a whole, and entities cannot grow, since a
- * document type, which 3MF forbids (Core 2.3), ends the reading. */
+/* Parts of the archive through libxml2's SAX, piece by piece: no part is ever in memory as a whole, and entities cannot grow,
+ * since a document type, which 3MF forbids (Core 2.3), ends the reading. */
 #include "import/3mf/threemf_file.h"
-#include <expat.h>
+#include <libxml/parser.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 1 << 16, TAG_MOST = 1 << 20 }; /* bytes of a read; of a tag and of what else is one piece to expat */
-
 bool threemf_wrong(threemf_xml *x, const char *format, ...) {
+    const xmlParserCtxt *parser = x->parser;
     char text[400];
     va_list args;
     va_start(args, format);
     (void)vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    return import_fail(x->f->im, "%.100s:%lu: %s", x->part, (unsigned long)XML_GetCurrentLineNumber(x->parser), text);
+    return import_fail(x->f->im, "%.100s:%d: %s", x->part, parser->input ? parser->input->line : 0, text);
 }
 
 /* ---- namespaces ---- */
 
-threemf_ns threemf_namespace(const char *uri, size_t length) {
+threemf_ns threemf_namespace(const char *uri) {
     static const struct {
         const char *uri;
         threemf_ns ns;
     } known[] = {{"http://schemas.microsoft.com/3dmanufacturing/core/2015/02", THREEMF_CORE},
                  {"http://schemas.microsoft.com/3dmanufacturing/material/2015/02", THREEMF_MATERIAL},
                  {"http://schemas.microsoft.com/3dmanufacturing/production/2015/06", THREEMF_PRODUCTION},
-                 {"http://schemas.microsoft.com/3dmanufacturing/2013/01", THREEMF_CORE}};
-    if (length == 0)
-        return THREEMF_CORE;
+                 {"http://schemas.microsoft.com/3dmanufacturing/2013/01", THREEMF_CORE},
+                 {"", THREEMF_CORE}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strlen(known[i].uri) == length && memcmp(known[i].uri, uri, length) == 0)
+        if (strcmp(known[i].uri, uri) == 0)
             return known[i].ns;
     return THREEMF_FOREIGN;
 }
 
-static threemf_element element_of(const char *name, const char **attributes) {
-    const char *bar = strrchr(name, '|');
-    return (threemf_element){.ns = threemf_namespace(name, bar ? (size_t)(bar - name) : 0),
-                             .uri = bar ? name : "|",
-                             .name = bar ? bar + 1 : name,
-                             .attributes = (const char *const *)attributes};
+/* Namespaces are few, and libxml2 has each text once. */
+static threemf_ns namespace_of(threemf_xml *x, const char *uri) {
+    if (uri != x->last_uri) {
+        x->last_uri = uri;
+        x->last_ns = threemf_namespace(uri);
+    }
+    return x->last_ns;
 }
 
 /* ---- attributes ---- */
 
 const char *threemf_attribute(const threemf_element *e, const char *name) {
-    for (const char *const *a = e->attributes; *a; a += 2)
-        if (strcmp(a[0], name) == 0)
-            return a[1];
+    for (size_t i = 0; i < e->count; i++)
+        if (!*e->attributes[i].uri && strcmp(e->attributes[i].name, name) == 0)
+            return e->attributes[i].value;
     return NULL;
 }
 
 const char *threemf_production(const threemf_element *e, const char *name) {
-    for (const char *const *a = e->attributes; *a; a += 2) {
-        const char *bar = strrchr(a[0], '|');
-        if (bar && strcmp(bar + 1, name) == 0 && threemf_namespace(a[0], (size_t)(bar - a[0])) == THREEMF_PRODUCTION)
-            return a[1];
-    }
+    for (size_t i = 0; i < e->count; i++)
+        if (strcmp(e->attributes[i].name, name) == 0 && threemf_namespace(e->attributes[i].uri) == THREEMF_PRODUCTION)
+            return e->attributes[i].value;
     return NULL;
 }
 
@@ -99,34 +97,81 @@ bool threemf_next_number(const char **at, bool single, double *out) {
     return true;
 }
 
-/* ---- expat's calls ---- */
+/* ---- libxml2's calls ---- */
 
 static void stop(threemf_xml *x) {
     x->failed = true;
-    (void)XML_StopParser(x->parser, XML_FALSE);
+    xmlStopParser(x->parser);
 }
 
-static void XMLCALL begin(void *user, const char *name, const char **attributes) {
-    threemf_xml *x = user;
+static const char *text_of(const xmlChar *text) {
+    return text ? (const char *)text : "";
+}
+
+/* A prefix that stands for nothing is as good a name of a namespace. */
+static const char *uri_of(const xmlChar *uri, const xmlChar *prefix) {
+    return text_of(uri ? uri : prefix);
+}
+
+/* libxml2 has five texts for each: name, prefix, namespace, and the value from its beginning to its end. */
+static bool read_attributes(threemf_xml *x, const xmlChar *const *five, size_t count) {
+    importer *im = x->f->im;
+    size_t size = 0;
+    for (size_t i = 0; i < count; i++)
+        size += (size_t)(five[5 * i + 4] - five[5 * i + 3]) + 1;
+    if (!import_room(im, &x->attributes, &x->attribute_room, count, sizeof *x->attributes) ||
+        !import_room(im, &x->values, &x->value_room, size, 1))
+        return false;
+    char *to = x->values;
+    for (size_t i = 0; i < count; i++, five += 5) {
+        const size_t length = (size_t)(five[4] - five[3]);
+        x->attributes[i] = (threemf_attribute_value){(const char *)five[0], uri_of(five[2], five[1]), to};
+        memcpy(to, five[3], length);
+        to[length] = '\0';
+        to += length + 1;
+    }
+    return true;
+}
+
+static bool begin_element(threemf_xml *x, const xmlChar *name, const char *uri, const xmlChar *const *five, int count) {
     bool skip = false;
+    if (!read_attributes(x, five, (size_t)count))
+        return false;
+    const threemf_element e = {.ns = namespace_of(x, uri),
+                               .uri = uri,
+                               .name = (const char *)name,
+                               .attributes = x->attributes,
+                               .count = (size_t)count};
+    const bool fine = x->begin(x, &e, &skip);
+    x->skipped = skip;
+    return fine;
+}
+
+static void begin(void *user, const xmlChar *name, const xmlChar *prefix, const xmlChar *uri, int spaces, const xmlChar **space,
+                  int count, int defaulted, const xmlChar **five) {
+    threemf_xml *x = user;
+    (void)defaulted;
     if (x->failed)
         return;
+    for (int i = 0; x->depth == 0 && x->prefix && i < spaces; i++)
+        if (!x->prefix(x, text_of(space[2 * i]), text_of(space[2 * i + 1]))) {
+            stop(x);
+            return;
+        }
     if (x->depth++ >= IMPORT_DEPTH) {
         (void)threemf_wrong(x, "elements are nested deeper than %d", IMPORT_DEPTH);
         stop(x);
     } else if (x->skipped > 0)
         x->skipped++;
-    else {
-        const threemf_element e = element_of(name, attributes);
-        if (!x->begin(x, &e, &skip))
-            stop(x);
-        x->skipped = skip;
-    }
+    else if (!begin_element(x, name, uri_of(uri, prefix), (const xmlChar *const *)five, count))
+        stop(x);
 }
 
-static void XMLCALL end(void *user, const char *name) {
+static void end(void *user, const xmlChar *name, const xmlChar *prefix, const xmlChar *uri) {
     threemf_xml *x = user;
     (void)name;
+    (void)prefix;
+    (void)uri;
     x->depth--;
     if (x->skipped > 0)
         x->skipped--;
@@ -134,18 +179,11 @@ static void XMLCALL end(void *user, const char *name) {
         x->end(x);
 }
 
-static void XMLCALL prefix(void *user, const char *prefix, const char *uri) {
-    threemf_xml *x = user;
-    if (!x->failed && x->depth == 0 && x->prefix && uri && !x->prefix(x, prefix ? prefix : "", uri))
-        stop(x);
-}
-
-static void XMLCALL doctype(void *user, const char *name, const char *system, const char *public, int internal) {
+static void doctype(void *user, const xmlChar *name, const xmlChar *public, const xmlChar *system) {
     threemf_xml *x = user;
     (void)name;
-    (void)system;
     (void)public;
-    (void)internal;
+    (void)system;
     if (!x->failed)
         (void)threemf_wrong(x, "has a document type, which 3MF forbids");
     stop(x);
@@ -153,45 +191,40 @@ static void XMLCALL doctype(void *user, const char *name, const char *system, co
 
 /* ---- reading ---- */
 
-/* Something that does not end would be looked at from its beginning again and again. */
-static bool check_piece(threemf_xml *x, uint64_t fed) {
-    const XML_Index at = XML_GetCurrentByteIndex(x->parser);
-    return at < 0 || fed - (uint64_t)at <= TAG_MOST + CHUNK || threemf_wrong(x, "a tag is longer than %d bytes", TAG_MOST);
+static int read_piece(void *user, char *to, int size) {
+    threemf_xml *x = user;
+    const zip_int64_t got = zip_fread(x->from, to, (zip_uint64_t)size);
+    x->damaged = x->damaged || got < 0;
+    return (int)got;
 }
 
-static bool feed(threemf_xml *x, zip_file_t *from) {
-    uint64_t fed = 0;
-    for (zip_int64_t got = 1; got > 0;) {
-        void *piece = XML_GetBuffer(x->parser, CHUNK);
-        if (!piece)
-            return import_fail(x->f->im, "out of memory");
-        got = zip_fread(from, piece, CHUNK);
-        if (got < 0)
-            return import_fail(x->f->im, "%.100s is damaged: %.100s", x->part, zip_file_strerror(from));
-        fed += (uint64_t)got;
-        if (XML_ParseBuffer(x->parser, (int)got, got == 0) == XML_STATUS_ERROR)
-            return x->failed ? false : threemf_wrong(x, "%s", XML_ErrorString(XML_GetErrorCode(x->parser)));
-        if (!check_piece(x, fed))
-            return false;
-    }
-    return true;
+static bool read_document(threemf_xml *x) {
+    xmlParserCtxt *parser = x->parser;
+    (void)xmlCtxtUseOptions(parser, XML_PARSE_NONET);
+    (void)xmlParseDocument(parser);
+    if (x->failed)
+        return false;
+    if (x->damaged)
+        return import_fail(x->f->im, "%.100s is damaged: %.100s", x->part, zip_file_strerror(x->from));
+    const xmlError *error = xmlCtxtGetLastError(parser);
+    return parser->wellFormed ||
+           import_fail(x->f->im, "%.100s:%d: is no well-formed XML: %.200s", x->part, error ? error->line : 0,
+                       error && error->message ? error->message : "it has an end");
 }
 
 bool threemf_read_xml(threemf_xml *x, const char *name) {
+    xmlSAXHandler calls = {
+        .initialized = XML_SAX2_MAGIC, .startElementNs = begin, .endElementNs = end, .internalSubset = doctype};
     const char *wrong;
     x->part = name + strspn(name, "/");
-    zip_file_t *from = threemf_open_part(x->f, name, &wrong);
-    if (!from)
+    x->from = threemf_open_part(x->f, name, &wrong);
+    if (!x->from)
         return import_fail(x->f->im, "%.200s in the archive %s", x->part, wrong);
-    x->parser = XML_ParserCreateNS(NULL, '|');
-    if (x->parser) {
-        XML_SetUserData(x->parser, x);
-        XML_SetElementHandler(x->parser, begin, end);
-        XML_SetStartNamespaceDeclHandler(x->parser, prefix);
-        XML_SetStartDoctypeDeclHandler(x->parser, doctype);
-    }
-    const bool fine = x->parser ? feed(x, from) : import_fail(x->f->im, "out of memory");
-    XML_ParserFree(x->parser);
-    (void)zip_fclose(from);
+    x->parser = xmlCreateIOParserCtxt(&calls, x, read_piece, NULL, x, XML_CHAR_ENCODING_NONE);
+    const bool fine = x->parser ? read_document(x) : import_fail(x->f->im, "out of memory");
+    xmlFreeParserCtxt(x->parser);
+    (void)zip_fclose(x->from);
+    free(x->attributes);
+    free(x->values);
     return fine;
 }
