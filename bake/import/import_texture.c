@@ -1,6 +1,7 @@
 #include "common/file_trouble.h"
 #include "import/image_file.h"
 #include "import/image_head.h"
+#include "import/image_whole.h"
 #include "import/importer.h"
 #include "import/webp.h"
 #include <stb/stb_image.h>
@@ -32,14 +33,18 @@ static const char *read_head(const uint8_t *bytes, size_t size, model_image *out
         return wrong;
     if (size >= 12 && memcmp(bytes, "\xabKTX 20\xbb\r\n\x1a\n", 12) == 0)
         return "is KTX2, which is not read: no library for it is packaged; save it as PNG, JPEG or WebP";
+    if (image_is_packed_bmp(bytes, size))
+        return "is a BMP with run lengths, which is not read: save it without, or as PNG";
     if (*webp ? !webp_size(bytes, size, &out->width, &out->height)
               : !image_head_size(bytes, size, &out->width, &out->height) || stbi_is_hdr_from_memory(bytes, (int)size))
-        return "is not an image that can be read (PNG, JPEG, WebP, TGA, BMP)";
+        return "is not an image that can be read (PNG, JPEG, WebP, TGA, BMP, of up to 16384 pixels an edge)";
     if (out->width < 1 || out->height < 1 || out->width > IMPORT_EDGE || out->height > IMPORT_EDGE)
         return "is larger than 16384 pixels";
     /* WebP has large pictures of one colour in some 30 bytes. */
     const uint64_t texels = (uint64_t)out->width * (uint64_t)out->height;
-    return texels > size * TEXELS_A_BYTE && !(*webp && texels <= WEBP_TEXELS) ? "is broken" : NULL;
+    if (texels > size * TEXELS_A_BYTE && !(*webp && texels <= WEBP_TEXELS))
+        return "is broken";
+    return image_is_cut(bytes, size) ? "is cut short" : NULL;
 }
 
 const char *import_decode(importer *im, const uint8_t *bytes, size_t size, model_image *out) {
@@ -56,7 +61,10 @@ const char *import_decode(importer *im, const uint8_t *bytes, size_t size, model
     import_allow_texels(im, (uint64_t)out->width * (uint64_t)out->height);
     out->rgba = webp ? webp_decode(bytes, size, out->width, out->height)
                      : stbi_load_from_memory(bytes, (int)size, &out->width, &out->height, &channels, 4);
-    return out->rgba ? NULL : "is broken";
+    if (!out->rgba)
+        return "is broken";
+    image_turn(bytes, size, out->rgba, out->width, out->height);
+    return NULL;
 }
 
 static int find_image(const model *m, const char *name) {

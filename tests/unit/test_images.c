@@ -50,8 +50,14 @@ static void rows_of_a_bmp_may_begin_at_the_top(void **state) {
         const int32_t height = top ? -2 : 2;
         for (int k = 0; k < 4; k++)
             bmp[22 + k] = (uint8_t)((uint32_t)height >> (8 * k));
+        put_bytes(FILE_OF("p.bmp"), bmp, sizeof bmp - 2);
+        refuse_picture("p.bmp", "is cut short");
+        put_bytes(FILE_OF("p.bmp"), bmp, sizeof bmp - 1); /* a pixel and the row's filling but for its last byte */
+        import_picture("p.bmp", &m);
+        model_free(&m);
         put_bytes(FILE_OF("p.bmp"), bmp, sizeof bmp);
         import_picture("p.bmp", &m);
+        assert_string_equal(warnings, "");
         assert_true(m.images[0].width == 1 && m.images[0].height == 2);
         texel_is(&m, 0, top ? 0 : 1, 255, 0, 0, 255);
         texel_is(&m, 0, top ? 1 : 0, 0, 0, 255, 255);
@@ -67,6 +73,44 @@ static void case_bmp_top_down(void **state) {
     texel_is(&m, 0, 0, 255, 0, 0, 255);
     texel_is(&m, 0, 1, 0, 0, 255, 255);
     model_free(&m);
+}
+
+static void a_bmp_with_run_lengths_is_told(void **state) {
+    uint8_t bmp[54 + 8] = {'B', 'M', 62, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 8, 0, 1};
+    (void)state;
+    put_bytes(FILE_OF("p.bmp"), bmp, sizeof bmp);
+    refuse_picture("p.bmp", "is a BMP with run lengths");
+}
+
+/* ---- TGA ---- */
+
+/* Two by two pixels, red and green over blue and white, in any order, packed or not. The last byte of the head says from which
+ * corner the file goes: 0x10 the right, 0x20 the top. */
+static void a_tga_may_begin_at_any_corner(void **state) {
+    static const uint8_t bgr[4][3] = {{0, 0, 255}, {0, 255, 0}, {255, 0, 0}, {255, 255, 255}};
+    (void)state;
+    for (unsigned k = 0; k < 8; k++) {
+        const bool right = k & 1, top = k & 2, packed = k & 4;
+        uint8_t tga[18 + 16] = {0, 0, packed ? 10 : 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24};
+        size_t size = 18;
+        model m;
+        tga[17] = (uint8_t)((right ? 0x10 : 0) | (top ? 0x20 : 0));
+        for (unsigned i = 0; i < 4; i++) {
+            const unsigned x = i % 2 ^ (right ? 1 : 0), y = i / 2 ^ (top ? 0 : 1);
+            if (packed)
+                tga[size++] = 0x80; /* a run of one */
+            memcpy(tga + size, bgr[2 * y + x], 3);
+            size += 3;
+        }
+        put_bytes(FILE_OF("p.tga"), tga, size);
+        import_picture("p.tga", &m);
+        assert_string_equal(warnings, "");
+        for (int i = 0; i < 4; i++)
+            texel_is(&m, i % 2, i / 2, bgr[i][2], bgr[i][1], bgr[i][0], 255);
+        model_free(&m);
+        put_bytes(FILE_OF("p.tga"), tga, size - 1);
+        refuse_picture("p.tga", "is cut short");
+    }
 }
 
 /* ---- JPEG ---- */
@@ -163,6 +207,19 @@ static void a_jpeg_that_cannot_be_read_right_is_told(void **state) {
     refuse_picture("p.jpg", "four channels that does not say which (no Adobe marker): save it as RGB");
     put_jpeg(ink, 3, -1, 0xc9);
     refuse_picture("p.jpg", "a kind that is not read (arithmetic");
+}
+
+static void a_jpeg_without_its_end_is_told(void **state) {
+    static const uint8_t grey[1] = {90};
+    uint8_t bytes[1024];
+    (void)state;
+    put_jpeg(grey, 1, -1, 0xc0);
+    FILE *file = fopen(FILE_OF("p.jpg"), "rb");
+    assert_non_null(file);
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
+    assert_int_equal(fclose(file), 0);
+    put_bytes(FILE_OF("p.jpg"), bytes, size - 2);
+    refuse_picture("p.jpg", "is cut short");
 }
 
 /* ---- PNG ---- */
@@ -352,8 +409,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         T(rows_of_a_bmp_may_begin_at_the_top),
         T(case_bmp_top_down),
+        T(a_bmp_with_run_lengths_is_told),
+        T(a_tga_may_begin_at_any_corner),
         T(channels_of_a_jpeg_are_what_its_adobe_marker_says),
         T(a_jpeg_that_cannot_be_read_right_is_told),
+        T(a_jpeg_without_its_end_is_told),
         T(a_png_may_be_interlaced),
         T(a_palette_may_be_transparent),
         T(a_gamma_that_is_not_srgbs_is_told),
