@@ -2,10 +2,13 @@
 #include "import/image_file.h"
 #include "import/importer.h"
 #include <ctype.h>
+#include <dirent.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,7 +40,38 @@ static void decode_percent(char *text) {
     *to = '\0';
 }
 
-/* Names are relative to the mesh's folder. An absolute one comes from its author's disk: its last part is tried here.
+/* The name in `folder` that differs from `part` in nothing but the case of its letters, the first of several by their bytes. */
+static bool name_of_any_case(const char *folder, char *part) {
+    char best[NAME_MAX + 1] = "";
+    DIR *all = opendir(*folder ? folder : ".");
+    for (const struct dirent *e; all && (e = readdir(all));)
+        if (strcasecmp(e->d_name, part) == 0 && (!*best || strcmp(e->d_name, best) < 0))
+            (void)snprintf(best, sizeof best, "%s", e->d_name);
+    if (all)
+        (void)closedir(all);
+    memcpy(part, best, strlen(best));
+    return *best != '\0';
+}
+
+/* Makes of path[from] on, names and slashes, what is there in another case: files of Windows do not tell them apart. */
+static bool find_any_case(char *path, size_t from) {
+    for (char *part = path + from; *part;) {
+        char folder[SCENE_PATH], *slash = strchr(part, '/');
+        (void)snprintf(folder, sizeof folder, "%.*s", (int)(part - path), path);
+        if (slash)
+            *slash = '\0';
+        const bool fine = *part == '\0' || name_of_any_case(folder, part);
+        if (slash)
+            *slash = '/';
+        if (!fine || !slash)
+            return fine && is_file(path);
+        part = slash + 1;
+    }
+    return false;
+}
+
+/* Names are relative to the mesh's folder. An absolute one comes from its author's disk: its last part is tried here. What is
+ * not there is looked for without regard to the case of letters.
  */
 bool import_resolve(const importer *im, const char *name, char path[SCENE_PATH]) {
     char plain[SCENE_PATH];
@@ -50,13 +84,16 @@ bool import_resolve(const importer *im, const char *name, char path[SCENE_PATH])
     const char *last = strrchr(plain, '/');
     if (last && (plain[0] == '/' || (isalpha((unsigned char)plain[0]) && plain[1] == ':')))
         relative = last + 1;
-    for (int pass = 0; pass < 2; pass++) {
-        const int used = snprintf(path, SCENE_PATH, "%.*s%s", slash ? (int)(slash + 1 - im->file) : 0, im->file, relative);
+    const int folder = slash ? (int)(slash + 1 - im->file) : 0;
+    char coded[SCENE_PATH];
+    (void)snprintf(coded, sizeof coded, "%s", relative);
+    decode_percent(plain + (relative - plain));
+    for (int pass = 0; pass < 4; pass++) { /* as it stands, decoded; then in any case */
+        const int used = snprintf(path, SCENE_PATH, "%.*s%s", folder, im->file, pass % 2 ? relative : coded);
         if (used < 0 || used >= SCENE_PATH)
             return false;
-        if (is_file(path))
+        if (pass < 2 ? is_file(path) : find_any_case(path, (size_t)folder))
             return true;
-        decode_percent(plain + (relative - plain));
     }
     return false;
 }

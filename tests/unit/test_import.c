@@ -95,6 +95,31 @@ static void backslashes_percent_signs_and_foreign_folders_find_their_texture(voi
     }
 }
 
+/* Of two that differ from the name in case alone it is the first by its bytes; the exact name goes before both. */
+static void names_are_found_in_any_case(void **state) {
+    static const char *const names[][2] = {{"TEXTURES\\Wood One.TGA", "textures/wood one.tga"},
+                                           {"Textures//wood%20ONE.tga", "textures//wood one.tga"},
+                                           {"two.tga", "TWO.TGA"},
+                                           {"Two.tga", "Two.tga"}};
+    (void)state;
+    folder_make(FILE_OF("textures"));
+    put_image(FILE_OF("textures/wood one.tga"), 255);
+    put_image(FILE_OF("Two.tga"), 255);
+    put_image(FILE_OF("TWO.TGA"), 255);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char mtl[256], found[256];
+        model m;
+        (void)snprintf(mtl, sizeof mtl, "newmtl m\nKd 1 1 1\nmap_Kd %s\n", names[i][0]);
+        (void)snprintf(found, sizeof found, FOLDER "/%s", names[i][1]);
+        put_obj(mtl);
+        import_good(FILE_OF("quad.obj"), &m);
+        assert_int_equal(m.image_count, 1);
+        assert_string_equal(m.images[0].name, found);
+        assert_string_equal(warnings, "");
+        model_free(&m);
+    }
+}
+
 static void a_missing_texture_is_a_warning_and_the_plain_colour(void **state) {
     model m;
     (void)state;
@@ -295,6 +320,7 @@ int main(void) {
         T(a_texture_transform_moves_the_uv),
         T(an_embedded_image_is_decoded),
         T(backslashes_percent_signs_and_foreign_folders_find_their_texture),
+        T(names_are_found_in_any_case),
         T(a_missing_texture_is_a_warning_and_the_plain_colour),
         T(a_missing_texture_is_refused_if_strict),
         T(an_image_that_promises_more_than_its_bytes_can_hold_is_broken),
