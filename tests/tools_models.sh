@@ -1,18 +1,17 @@
 #!/bin/sh
 # One scene as many tools write it, each file baked and played, on one sheet beside Cycles' picture of the original:
 #   tests/tools_models.sh [folder of the tools, default build/release] [folder for models and pictures, default build/tools_models]
-# Blender writes glTF, FBX, COLLADA, OBJ, PLY and STL; Assimp (from COLLADA), trimesh, MeshLab and gltfpack turn these into others; OpenSCAD has the scene as a
-# script of its own, in millimetres. To be looked at: all parts are there, upright, of one size, F and L not mirrored but for the right L, red,
-# green and yellow where a format has colours, the pane a hole, the camera where the file's is. Needs the network, 3 GB, and the packages openscad,
-# assimp-utils, gltfpack. Exit 1 if a file is not baked and played.
+# Blender writes glTF, FBX, COLLADA, OBJ, PLY and STL; Assimp (from COLLADA), trimesh, MeshLab and gltfpack turn these into others; lib3mf writes what
+# 3MF has; OpenSCAD and FreeCAD have the scene as scripts of their own, in millimetres. To be looked at: all parts are there, upright, of one size, F
+# and L not mirrored but for the right L, red, green and yellow where a format has colours, the pane a hole, the camera where the file's is. Needs the
+# network, 3 GB, and the packages openscad, assimp-utils, gltfpack, freecad-python3, python3-collada. Exit 1 if a file is not baked and played.
 # Wrong in the files themselves: Assimp 5.2's 3DS and 3MF (places lost, 3MF's colours black), X (one material for all) and FBX (which Assimp itself
 # refuses); MeshLab's PLY and COLLADA (one texture for all), OBJ (the texture is lost; normals smoothed over edges); Blender's FBX of the lamp (no unit).
-# OpenSCAD's 3MF is an archive in ZIP64, which Debian 12's libminizip does not read.
 set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/tools_models} failed=0 sheet=
 mkdir -p "$out"
 cd "$out" || exit 1
-[ -x v/bin/python ] || { python3 -m venv v && v/bin/pip install -q bpy==4.2.0 numpy scipy trimesh==5.2.0 networkx lxml pycollada pymeshlab pillow; } || exit 1
+[ -x v/bin/python ] || { python3 -m venv v && v/bin/pip install -q bpy==4.2.0 numpy scipy trimesh==5.2.0 networkx lxml pycollada pymeshlab pillow lib3mf==2.5.0; } || exit 1
 rm -rf models pictures && mkdir models pictures
 
 cat > scene.py <<'P'
@@ -118,6 +117,82 @@ for kind in ('ply', 'dae', 'obj', 'x3d', '3ds'):
         print(kind, str(e).split('\n')[0])
 P
 v/bin/python others.py
+cat > consortium.py <<'P'
+# The same scene through the 3MF Consortium's own library, in millimetres, z up: base materials, a colour group, a picture, components, a mirror.
+import ctypes, lib3mf, numpy, trimesh
+from lib3mf import get_wrapper
+scene = trimesh.load('models/blender.glb')
+w = get_wrapper()
+model = w.CreateModel()
+bases, colors = model.AddBaseMaterialGroup(), model.AddColorGroup()
+picture = model.AddAttachment('/3D/Textures/sign.png', 'http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture')
+picture.ReadFromFile('models/sign.png')
+image = model.AddTexture2DFromAttachment(picture)
+image.SetContentType(lib3mf.TextureType.PNG)
+coordinates = model.AddTexture2DGroup(image)
+def srgb(c):
+    return 12.92 * c if c < 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055
+def properties(mesh, group, of):
+    for i in range(mesh.GetTriangleCount()):
+        p = lib3mf.TriangleProperties()
+        p.ResourceID = group.GetUniqueResourceID()
+        for k, value in enumerate(of(i)):
+            p.PropertyIDs[k] = value
+        mesh.SetTriangleProperties(i, p)
+    mesh.SetObjectLevelProperty(group.GetUniqueResourceID(), of(0)[0])
+def add(name, part):
+    mesh = model.AddMeshObject()
+    mesh.SetName(name)
+    part.merge_vertices()
+    for v in part.vertices:
+        mesh.AddVertex(lib3mf.Position((ctypes.c_float * 3)(*[float(x) for x in v])))
+    for f in part.faces:
+        mesh.AddTriangle(lib3mf.Triangle((ctypes.c_uint32 * 3)(*[int(x) for x in f])))
+    material = part.visual.material
+    if material.baseColorTexture is not None:
+        ids = [coordinates.AddTex2Coord(lib3mf.Tex2Coord(float(u), float(v))) for u, v in part.visual.uv]
+        properties(mesh, coordinates, lambda i: [ids[v] for v in part.faces[i]])
+        return mesh
+    linear = [1, 1, 1, 1] if material.baseColorFactor is None else [x / 255 for x in material.baseColorFactor]
+    color = w.FloatRGBAToColor(*[srgb(x) for x in linear[:3]], linear[3])
+    if name in ('Red', 'Green'):
+        one = colors.AddColor(color)
+        properties(mesh, colors, lambda i: [one] * 3)
+    else:
+        mesh.SetObjectLevelProperty(bases.GetUniqueResourceID(), bases.AddMaterial(material.name, color))
+    return mesh
+def transform(m):
+    t = lib3mf.Transform()
+    for row in range(4):
+        for k in range(3):
+            t.Fields[row][k] = float(m[k][row])
+    return t
+stand = numpy.diag([1000.0, 1000.0, 1000.0, 1.0]) @ numpy.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+made, balls = {}, model.AddComponentsObject()
+for node in scene.graph.nodes_geometry:
+    place, geometry = scene.graph[node]
+    if geometry not in made:
+        made[geometry] = add(node, scene.geometry[geometry])
+    if node.startswith('Ball'):
+        balls.AddComponent(made[geometry], transform(place))
+    else:
+        model.AddBuildItem(made[geometry], transform(stand @ place))
+model.AddBuildItem(balls, transform(stand))
+model.QueryWriter('3mf').WriteToFile('models/lib3mf.3mf')
+# Colours that run from corner to corner, of a cube.
+model = w.CreateModel()
+colors, mesh, cube = model.AddColorGroup(), model.AddMeshObject(), trimesh.creation.box((1000, 1000, 1000))
+for v in cube.vertices:
+    mesh.AddVertex(lib3mf.Position((ctypes.c_float * 3)(*[float(x) for x in v])))
+    colors.AddColor(w.FloatRGBAToColor(*[float(x) / 1000 + 0.5 for x in v], 1))
+for f in cube.faces:
+    mesh.AddTriangle(lib3mf.Triangle((ctypes.c_uint32 * 3)(*[int(x) for x in f])))
+ids = colors.GetAllPropertyIDs()
+properties(mesh, colors, lambda i: [ids[v] for v in cube.faces[i]])
+model.AddBuildItem(mesh, transform(numpy.eye(4)))
+model.QueryWriter('3mf').WriteToFile('models/lib3mf_colours.3mf')
+P
+v/bin/python consortium.py
 for kind in dae 3ds fbx stl obj x 3mf; do assimp export models/blender.dae "models/assimp.$kind" > /dev/null 2>&1; done
 gltfpack -i models/blender.glb -o models/gltfpack.glb -cc -kn -ke > /dev/null
 cat > scene.scad <<'P'
@@ -130,6 +205,32 @@ color([.9, .8, .05]) { translate([-800, -1000, 0]) L(); translate([900, -1000, 0
 color([.8, .8, .8]) { translate([-800, 1400, 700]) cube([1600, 1, 1200]); for (i = [0:2]) translate([-600 + 600 * i, -300, 200]) sphere(200); }
 P
 for kind in 3mf amf stl; do openscad -q -o models/openscad.$kind scene.scad 2> /dev/null; done
+cat > freecad.py <<'P'
+# FreeCAD without its window, in millimetres, z up, and without colours, which belong to the window.
+import FreeCAD, Part, Mesh
+from FreeCAD import Vector, Placement, Rotation
+d = FreeCAD.newDocument()
+def put(name, shape, place=(0, 0, 0), turn=(0, 0, 0)):
+    o = d.addObject('Part::Feature', name)
+    o.Shape, o.Placement = shape, Placement(Vector(*place), Rotation(*turn))
+put('Ground', Part.makeBox(6000, 6000, 1, Vector(-3000, -3000, -1)))
+put('Red', Part.makeBox(1000, 1000, 1000, Vector(-500, -500, 0)), (-1600, 0, 0), (23, 0, 0))
+put('Green', Part.makeBox(800, 800, 2000, Vector(-400, -400, 0)), (1600, 600, 0))
+outline = [(0, 0), (700, 0), (700, 250), (250, 250), (250, 1000), (0, 1000), (0, 0)]
+def letter(sign):
+    return Part.Face(Part.makePolygon([Vector(sign * x, 0, y) for x, y in outline])).extrude(Vector(0, -200, 0))
+put('Left', letter(1), (-800, -1000, 0))
+put('Right', letter(-1), (900, -1000, 0))
+put('Sign', Part.makeBox(1600, 1, 1200, Vector(-800, 1400, 700)))
+for i in range(3):
+    put('Ball%d' % i, Part.makeSphere(200), (-600 + 600 * i, -300, 200))
+d.recompute()
+for kind in ('3mf', 'amf', 'x3d', 'obj', 'ply', 'stl'):
+    Mesh.export(d.Objects, 'models/freecad.' + kind)
+import importDAE
+importDAE.export(d.Objects, 'models/freecad.dae')
+P
+for f in freecadcmd FreeCADCmd freecadcmd-python3; do ! command -v "$f" > /dev/null || { "$f" freecad.py > freecad.log 2>&1 < /dev/null; break; }; done
 
 by_keys='keys = ( { eye = (0.6, 2.4, 6); target = (0, 0.8, 0); fov = 36; } );'
 lamp='{ type = "point"; keys = ( { position = (-2, 4, 3); power = (160, 160, 160); } ); }'
@@ -181,6 +282,15 @@ row meshlab.x3d ''
 row meshlab.3ds 'up = "y";'
 row gltfpack.glb '' "$cam" '{ use = "Lamp"; }'
 row openscad.3mf ''
+row freecad.3mf ''
+row freecad.amf 'up = "z";'
+row freecad.x3d 'units = 0.001; up = "z";'
+row freecad.obj 'units = 0.001; up = "z";'
+row freecad.ply 'units = 0.001; up = "z";'
+row freecad.stl 'units = 0.001; up = "z";'
+row freecad.dae ''
+row lib3mf.3mf ''
+row lib3mf_colours.3mf '' 'keys = ( { eye = (1.6, 1.2, 2); target = (0, 0, 0); fov = 36; } );'
 row openscad.amf 'up = "z";'
 row openscad.stl 'units = 0.001; up = "z";'
 v/bin/python - $sheet <<'P'

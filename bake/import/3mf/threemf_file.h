@@ -149,7 +149,8 @@ typedef struct threemf_file {
     uint32_t flat_look[THREEMF_COLORS], flat_looks; /* of colour groups */
     uint8_t (*paint)[3][3];                         /* the picture: colours of the corners of each of its places, sRGB */
     size_t paint_count, paint_room;
-    uint64_t supports, not_printed, bad_property; /* counted: objects placed, items, triangles */
+    uint64_t supports, not_printed, missing, bad_property; /* counted: objects placed, items, items and components, triangles */
+    uint32_t missing_id;                                   /* the first object that is not there */
 } threemf_file;
 
 /* ---- threemf_package.c: the archive ---- */

@@ -25,8 +25,10 @@ static bool visit(threemf_file *f, const threemf_child *child, uint32_t from, co
     const threemf_resource *r = threemf_find(f, child->part, child->id);
     const double ratio = f->parts[child->part].unit / f->parts[from].unit;
     double own[12], world[12];
-    if (!r || r->kind != THREEMF_OBJECT)
-        return import_fail(f->im, "%.200s has no object %u", f->text + f->parts[child->part].path, child->id);
+    if (!r || r->kind != THREEMF_OBJECT) { /* trimesh writes such for nodes without a mesh */
+        f->missing_id = f->missing++ ? f->missing_id : child->id;
+        return true;
+    }
     threemf_object *o = &f->objects[r->index];
     if (o->open || depth > IMPORT_DEPTH)
         return import_fail(
@@ -66,6 +68,10 @@ bool threemf_find_places(threemf_file *f, const double stand[12]) {
         if (!visit(f, &f->items[i], 0, stand, 0))
             return false;
     turn_lists(f);
+    if (f->missing > 0 &&
+        !import_not_done(f->im, "%llu items and components lead to no object (%u is the first): they are left out",
+                         (unsigned long long)f->missing, f->missing_id))
+        return false;
     if (f->supports > 0 && !import_not_done(f->im, "%llu objects that are supports or of type 'other' are left out",
                                             (unsigned long long)f->supports))
         return false;
