@@ -21,7 +21,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 9u
+#define VIT_PACK_VERSION 10u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
@@ -64,6 +64,7 @@
     X(GROW, vit_gather_row, s->patches ? s->receivers : 0u)                                                                    \
     X(GATH, vit_u32, s->gather_words)                                                                                          \
     X(LOOK, vit_u32, (uint64_t)VIT_LOOKED_SETS(s) * (s->receivers / 32))                                                       \
+    X(CACH, vit_cache_cell, s->cache_cells)                                                                                    \
     X(XFER, vit_u32, s->transfer_words)                                                                                        \
     X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)

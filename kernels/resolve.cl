@@ -1,4 +1,4 @@
-/* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (27): radiance = direct + albedo / pi * irradiance;
+/* The pass resolve: light to pixels. METHODS.md, "Film and resolve" (30): radiance = direct + albedo / pi * irradiance;
  * exposure; transfer curve. VIT_VIEW and VIT_FORMAT are numbers of vit_view and vit_format (vitrine_frame.h). */
 
 /* IEC 61966-2-1 curve, 0..1. Absolute error below 1.5e-7 (tests/numeric). */

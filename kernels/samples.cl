@@ -48,7 +48,7 @@ static inline void samples_clear(global const vit_scene *scene, uint first, glob
 
 /* Radiance of surfaces that needs no light source: emission and ambient light. */
 static inline lv3 sample_own_light(global const vit_scene *scene, const surface *s) {
-    if (!VIT_EFFECT_AMBIENT)
+    if (!VIT_EFFECT_AMBIENT || VIT_EFFECT_OCCLUSION) /* with occlusion the pass ambient_light adds it */
         return s->emission;
     lv3 all = VIT_EFFECT_SPECULAR ? lv3_along(s->albedo, s->specular.specular, L_F(1)) : s->albedo;
     return lv3_set(fma(all.x, L_F(scene->ambient[0]), s->emission.x), fma(all.y, L_F(scene->ambient[1]), s->emission.y),

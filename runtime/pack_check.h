@@ -31,6 +31,8 @@ vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vi
 /* pack_check_radiosity.c: patches, and what receivers see of them. */
 vit_pack_check vit_pack_check_PATC, vit_pack_check_PPNT, vit_pack_check_GROW, vit_pack_check_GATH, vit_pack_check_LOOK,
     vit_pack_check_XFER;
+/* pack_check_cache.c: the table of the world-space cache. */
+vit_pack_check vit_pack_check_CACH;
 /* Irradiance of any receiver by a light of the basis with an intensity of 1, at most; *still: by all other light, W/m2. Both 0
  * without receivers. */
 double vit_pack_basis_bound(const vit_pack *p, double *still);

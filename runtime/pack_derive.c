@@ -24,6 +24,7 @@ enum {
     MAX_LOOKED = 1 << 28, /* words */
     MAX_TRANSFER = 1 << 30,
     MAX_SUMS = 2 * VIT_MAX_COLUMNS / VIT_TRANSFER_CHUNK + 1,
+    MAX_CACHE = 1 << 26, /* words of them within 32 bits, signed */
     MAX_SLICES = 4096,
     MAX_KEY_BITS = 30, /* 2^25 mask words, 128 MiB, for the last level of the hierarchy */
     BITS_A_LEVEL = 5,  /* one 32-bit mask word tells a node's children */
@@ -66,6 +67,9 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"transfer_words", s->transfer_words, 0, MAX_TRANSFER},
         {"transfer_rank", s->transfer_rank, 0, VIT_TRANSFER_MOST_RANK},
         {"transfer_sums", s->transfer_sums, 0, MAX_SUMS},
+        {"cache_cells", s->cache_cells, 0, MAX_CACHE},
+        {"cache_probes", s->cache_probes, 0, VIT_CACHE_PROBES},
+        {"cache_levels", s->cache_levels, 0, VIT_CACHE_LEVELS},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
         {"area_samples", s->area_samples, 0, VIT_MAX_LIGHT_SAMPLES},
         {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},
@@ -87,6 +91,8 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
     if (s->patch_points % 16 != 0 || s->transfer_rank % VIT_TRANSFER_ROWS != 0)
         return vit_fail(why, VIT_BAD_INPUT, "patch_points and transfer_rank must be multiples of 16, got %u and %u",
                         s->patch_points, s->transfer_rank);
+    if (s->cache_cells & (s->cache_cells - 1))
+        return vit_fail(why, VIT_BAD_INPUT, "cache_cells must be a power of two, got %u", s->cache_cells);
     if (s->tile != 8 && s->tile != 16 && s->tile != 32 && s->tile != 64)
         return vit_fail(why, VIT_BAD_INPUT, "tile must be 8, 16, 32 or 64, got %u", s->tile);
     return VIT_OK;

@@ -30,7 +30,7 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 
 static vit_status check_floats(const vit_scene *s, vit_text *why) {
     const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
-    const bool small = s->effects & VIT_BIT(SMALL_SAMPLES);
+    const bool small = s->effects & VIT_BIT(SMALL_SAMPLES), open = s->effects & VIT_BIT(OCCLUSION);
     const struct {
         const char *name;
         float value, least, most;
@@ -48,6 +48,9 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"grid_step", s->grid_step, small ? least : 0.0f, small ? FLT_MAX / 65536 : 0.0f},
         {"contrast", s->contrast, 0.0f, 1.0f},
         {"most_reflected", s->most_reflected, 0.0f, s->effects & VIT_BIT(TRANSFER) ? VIT_MAX_PHOTON : 0.0f},
+        {"ambient_radius", s->ambient_radius, open ? least : 0.0f, open ? FLT_MAX : 0.0f},
+        {"cache_step", s->cache_step, open ? least : 0.0f, open ? FLT_MAX : 0.0f},
+        {"cache_detail", s->cache_detail, 0.0f, open ? FLT_MAX : 0.0f},
         {"ambient red", s->ambient[0], 0.0f, VIT_MAX_RADIANCE},
         {"ambient green", s->ambient[1], 0.0f, VIT_MAX_RADIANCE},
         {"ambient blue", s->ambient[2], 0.0f, VIT_MAX_RADIANCE},
@@ -62,7 +65,8 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return s->pad == 0 ? VIT_OK : vit_pack_refuse(why, "section META: padding is not 0");
+    return s->pad == 0 && s->cache_pad[0] == 0 && s->cache_pad[1] == 0 ? VIT_OK
+                                                                       : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -153,6 +157,11 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
     if ((s->copies > 1) != ((e & VIT_BIT(ANTIALIAS)) != 0))
         return vit_pack_refuse(why, "section META: %u copies contradict the effect ANTIALIAS", s->copies);
+    const bool cached = e & VIT_BIT(OCCLUSION);
+    if ((s->cache_cells > 0) != cached || (s->cache_probes > 0) != cached || (s->cache_levels > 0) != cached)
+        return vit_pack_refuse(why,
+                               "section META: %u cells, %u probes and %u levels of a cache contradict the effect OCCLUSION",
+                               s->cache_cells, s->cache_probes, s->cache_levels);
     if (s->baked > 0 && !photons)
         return vit_pack_refuse(why, "section META: %u baked photons without the effect PHOTONS", s->baked);
     return VIT_OK;

@@ -54,6 +54,8 @@
       B(position), B(normal), B(rays), B(specular), B(skylight), ARGS_WORK)                                                    \
     X(sky_filter, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(specular),  \
       B(skylight), B(direct))                                                                                                  \
+    X(ambient_light, ON(OCCLUSION), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(hit_triangle), B(position),     \
+      B(normal), B(albedo), B(specular), B(cache), B(direct), ARGS_WORK)                                                       \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters), B(scene), V(round), B(masks), B(counters))  \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(lights), V(frame), B(sides),     \
       B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                                                                \

@@ -71,6 +71,7 @@ typedef struct vit_launch {
     X(gather_words, ON(RADIOSITY), GATH, (uint64_t)s->gather_words * 4)                                                        \
     X(looked_up, ON(RADIOSITY), LOOK, (uint64_t)VIT_LOOKED_SETS(s) * (s->receivers / 32) * 4)                                  \
     X(transfer, ON(TRANSFER), XFER, (uint64_t)s->transfer_words * 4)                                                           \
+    X(cache, ON(OCCLUSION), CACH, s->cache_cells * sizeof(vit_cache_cell))                                                     \
     X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
       VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
     X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \

@@ -99,6 +99,9 @@ typedef struct host_lab {
     /* Barycentric weights b1, b2 of what rays find at hits, two planes, and whether it is the back: -1. */
     void (*weights)(const host_lab_mesh *m, const float *rays, const float *distance, const uint32_t *triangle, uint32_t n,
                     float *b1_b2, int32_t *back);
+    /* Open parts, 0..1, that a cache says of places: planes of position, unit normal, distance from the eye (negative: no
+     * place, 1). s: cache_* of it. */
+    void (*open)(const vit_scene *s, const vit_cache_cell *cells, const float *places, uint32_t n, float *open);
     /* The product with a coded transfer matrix, of kernels/transfer_product.clh, which has the layout of what is between. */
     void (*transfer)(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y);
 } host_lab;

@@ -33,6 +33,7 @@ enum {
     FIXTURE_RANK = 16,
     FIXTURE_SPARSE = 96, /* words: a pair of slots in each of two panels */
     FIXTURE_TRANSFER = 20 + 3 * 32 + 4 + 32 + FIXTURE_SPARSE + 2 * 256 + 96 + 32 + 3 * 256,
+    FIXTURE_CACHE = 8,
     FIXTURE_SKY = 2,
     FIXTURE_POINTS = 2 * VIT_PATTERNS
 };
@@ -65,6 +66,7 @@ typedef struct pack_fixture {
     vit_u32 gather_words[FIXTURE_GATHER];
     vit_u32 looked_up[FIXTURE_LOOKED];
     vit_u32 transfer[FIXTURE_TRANSFER];
+    vit_cache_cell cache[FIXTURE_CACHE];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -284,7 +286,26 @@ static inline void fixture_basis(pack_fixture *f) {
     }
 }
 
-/* fixture_make() with the effects BASIS and RELIGHT for PHOTONS and all that needs them. */
+/* Five cells of eight records. Those of keys 7 and 15 begin at the last record, two others have one key. */
+static inline void fixture_cache(pack_fixture *f) {
+    static const vit_u32 keys[FIXTURE_CACHE] = {8, 15, 17, 17, VIT_CACHE_EMPTY, VIT_CACHE_EMPTY, VIT_CACHE_EMPTY, 7};
+    for (vit_u32 i = 0; i < FIXTURE_CACHE; i++) {
+        f->cache[i].key = keys[i];
+        for (vit_u32 q = 0; q < VIT_CACHE_POINTS && keys[i] != VIT_CACHE_EMPTY; q++)
+            f->cache[i].word[VIT_CACHE_WORD(q)] |= (i * 100 + q) << VIT_CACHE_SHIFT(q);
+        if (keys[i] != VIT_CACHE_EMPTY)
+            f->cache[i].word[2] |= i << 20;
+    }
+    f->scene.effects |= VIT_BIT(OCCLUSION);
+    f->scene.cache_cells = FIXTURE_CACHE;
+    f->scene.cache_probes = 3;
+    f->scene.cache_levels = 2;
+    f->scene.ambient_radius = 0.5f;
+    f->scene.cache_step = 0.0625f;
+    f->scene.cache_detail = 2;
+}
+
+/* fixture_make() with the effects OCCLUSION, and BASIS and RELIGHT for PHOTONS and all that needs them. */
 static inline void fixture_make_basis(pack_fixture *f) {
     fixture_make(f);
     f->scene.effects = (f->scene.effects & ~vit_effects_upon(VIT_BIT(PHOTONS))) | VIT_BIT(BASIS) | VIT_BIT(RELIGHT);
@@ -299,6 +320,7 @@ static inline void fixture_make_basis(pack_fixture *f) {
         f->lights[i].path_count = 0;
     for (vit_u32 i = 0; i < FIXTURE_FRAMES; i++)
         f->golds[i] = (vit_gold){.xrgb8888 = {i + 1, 2}};
+    fixture_cache(f);
     fixture_receivers(f);
     fixture_basis(f);
     vit_pack_derive(&f->scene, NULL);
@@ -409,7 +431,7 @@ static inline pack_sections fixture_sections(const pack_fixture *f) {
             [VIT_SECTION_BWRD] = f->words,        [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
             [VIT_SECTION_PATC] = f->patches,      [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
             [VIT_SECTION_GATH] = f->gather_words, [VIT_SECTION_LOOK] = f->looked_up,    [VIT_SECTION_XFER] = f->transfer,
-            [VIT_SECTION_PHOT] = f->photons,      [VIT_SECTION_GOLD] = f->golds,
+            [VIT_SECTION_CACH] = f->cache,        [VIT_SECTION_PHOT] = f->photons,      [VIT_SECTION_GOLD] = f->golds,
         }};
 }
 

@@ -45,6 +45,7 @@ typedef struct image {
     vit_gather_row *gather_rows;
     vit_u32 *gather_words, *looked_up;
     vit_u32 *transfer;
+    vit_cache_cell *cache;
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -85,6 +86,7 @@ static inline image image_of(const pack_fixture *f) {
     im.gather_words = section(&im, VIT_SECTION_GATH);
     im.looked_up = section(&im, VIT_SECTION_LOOK);
     im.transfer = section(&im, VIT_SECTION_XFER);
+    im.cache = section(&im, VIT_SECTION_CACH);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;

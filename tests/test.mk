@@ -16,7 +16,7 @@ $(HOST_ISAS:%=$(B)/tests/host_lab_%.o): $(B)/tests/host_lab_%.o: tests/host_lab_
 	$(CC) $(if $(filter release,$(config)),-O2) $(HOST_CFLAGS) -Wno-unused-function -Wno-unused-variable $(HOST_FLAGS_$*) -DVIT_LANES=8 -DHOST_ISA='"$*"' -DHOST_LAB=host_lab_$* -c $< -o $@
 
 NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
-$(NUMERIC_PROGRAMS) $(addprefix $(B)/tests/unit/test_,transfer_kernel receivers_kernel relight_kernel): $(HOST_LAB)
+$(NUMERIC_PROGRAMS) $(addprefix $(B)/tests/unit/test_,transfer_kernel receivers_kernel relight_kernel cache_kernel): $(HOST_LAB)
 # Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)

@@ -45,7 +45,7 @@ static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\
 /* All that a scene can call for. */
 #define SPECULAR_SCENE                                                                                                         \
     "meshes = ( { file = \"room.obj\"; }, { file = \"bodies.obj\"; } );\nambient = [0.02, 0.03, 0.04];\n"                      \
-    "background = [0.2, 0.3, 0.4];\nsky: { light = true; };\n"                                                                 \
+    "ambient_radius = 0.5;\nbackground = [0.2, 0.3, 0.4];\nsky: { light = true; };\n"                                          \
     "materials = ( { name = \"lamp\"; area_light = true; },"                                                                   \
     " { name = \"floor\"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = \"chrome\"; kind = \"mirror\";"             \
     " specular = [0.9, 0.8, 0.7]; }, { name = \"glass\"; kind = \"glass\"; ior = 1.5; absorption = [0.5, 0.2, 0.1]; } );\n"    \
@@ -54,7 +54,7 @@ static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\
     "lights = (" ROOM_STILL ", " ROOM_MOVING ", { type = \"directional\"; keys = ( { position = [0.3, 3.0, 2.0];"              \
     " target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); });\n"                                                      \
     "quality: { indirect = \"photons\"; photons = 2000; radius = 0.4; tile = 16; indirect_samples = 4; antialias = 2; "        \
-    "light_samples = 4; sky_samples = 4; };\n"
+    "light_samples = 4; sky_samples = 4; cache_error = 0.2; };\n"
 
 /* 8 x 8 texels of blue, green, red and alpha behind a TGA header: squares of 4 x 4 are opaque or holes in turn. */
 enum { HOLES_EDGE = 8, HOLES_HEADER = 18, HOLES_BYTES = HOLES_HEADER + 4 * HOLES_EDGE * HOLES_EDGE };

@@ -9,7 +9,8 @@
     (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) |         \
      VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE))
 /* Effects that a scene's `effects` may name, force on and force off: those of surfaces, the sky and pixels. */
-#define EFFECTS_NAMED (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS))
+#define EFFECTS_NAMED                                                                                                          \
+    (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(OCCLUSION) | VIT_BIT(ANTIALIAS))
 
 /* Name of the effect of a bit. */
 const char *effects_name(int bit);

@@ -50,6 +50,10 @@ void effects_drop(vit_scene *c, uint64_t effects) {
         c->area_samples = 0;
     if (!(c->effects & VIT_BIT(SKY_LIGHT)))
         c->sky_samples = 0;
+    if (!(c->effects & VIT_BIT(OCCLUSION))) {
+        c->cache_cells = c->cache_probes = c->cache_levels = 0;
+        c->ambient_radius = c->cache_step = c->cache_detail = 0;
+    }
 }
 
 void effects_force(const scene *s, vit_scene *c, effects_decided *out) {

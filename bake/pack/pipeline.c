@@ -16,8 +16,8 @@ static const struct {
 } pack_stages[] = {
     {stage_choose_shape, false}, {stage_plan, false},     {stage_guiding, false}, {stage_area_lights, false},
     {stage_photons, false},      {stage_radius, false},   {stage_photons, true},  {stage_zones, false},
-    {stage_photons, true},       {stage_indirect, false}, {stage_frames, false},  {stage_bounds, false},
-    {stage_assemble, false},
+    {stage_photons, true},       {stage_indirect, false}, {stage_cache, false},   {stage_frames, false},
+    {stage_bounds, false},       {stage_assemble, false},
 };
 
 vit_status out_of_memory(vit_text *why) {
@@ -142,6 +142,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     cells_free(&packed->cells);
     baked_free(&packed->baked);
     live_free(&packed->live);
+    occlusion_free(&packed->occlusion);
     plan_free(&packed->plan);
     geometry_free(&packed->coarse.geometry);
     bvh_free(&packed->coarse.bvh);

@@ -3,6 +3,7 @@
 #ifndef VIT_BAKE_PIPELINE_H
 #define VIT_BAKE_PIPELINE_H
 
+#include "cache/occlusion.h"
 #include "geometry/atlas.h"
 #include "geometry/bvh.h"
 #include "light/photon_guiding.h"
@@ -74,6 +75,7 @@ typedef struct pipeline_packed {
     zones_found zones;
     baked baked;                   /* indirect light; none without the effects BASIS and RADIOSITY */
     live live;                     /* none without the effect RADIOSITY */
+    occlusion occlusion;           /* none without the effect OCCLUSION */
     const photon_guiding *guiding; /* the pipeline's; NULL: photons are not guided */
     double guided_gain;            /* how many even paths a guided one stands for, where paths are worth something */
     vit_light_sample *area_lights; /* section EMIT */

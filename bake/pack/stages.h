@@ -35,11 +35,15 @@ vit_status stage_radius(bake *b, vit_text *why);
 vit_status stage_zones(bake *b, vit_text *why);
 /* stages_indirect.c. */
 vit_status stage_indirect(bake *b, vit_text *why);
+/* stages_cache.c. */
+vit_status stage_cache(bake *b, vit_text *why);
 /* stages_bounds.c. */
 vit_status stage_frames(bake *b, vit_text *why);
 vit_status stage_bounds(bake *b, vit_text *why);
 vit_status stage_assemble(bake *b, vit_text *why);
 
+/* What rays of the baker meet: the pack's triangles, materials and textures. */
+photon_scene stages_scene(const bake *b);
 /* The sky as a source of light for photons and receivers. */
 photons_light stages_sky_source(const pipeline *p, const pipeline_packed *out);
 /* Points out->sections and b->bounds at what there is by now. */

@@ -36,6 +36,7 @@ void stages_point(bake *b) {
                  [VIT_SECTION_GROW] = out->live.rows,
                  [VIT_SECTION_GATH] = out->live.words,
                  [VIT_SECTION_LOOK] = out->live.looked,
+                 [VIT_SECTION_CACH] = out->occlusion.table.records,
                  [VIT_SECTION_XFER] = out->live.transfer.words,
                  [VIT_SECTION_CELL] = out->cells.cells,
                  [VIT_SECTION_EMIT] = out->area_lights,

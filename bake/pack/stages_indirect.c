@@ -28,7 +28,7 @@ static uint32_t sources(const bake *b, photons_light *still, uint32_t *moving, u
     return count;
 }
 
-static photon_scene scene_of_pack(const bake *b) {
+photon_scene stages_scene(const bake *b) {
     const pipeline_packed *out = b->out;
     return (photon_scene){.triangles = out->geometry->triangles,
                           .attributes = out->geometry->attributes,
@@ -159,7 +159,7 @@ vit_status stage_indirect(bake *b, vit_text *why) {
         return VIT_OK;
     photons_light *still = calloc(out->tracks.light_count + 2u, sizeof *still);
     uint32_t *moving = calloc(out->tracks.light_count + 1u, sizeof *moving), moving_count = 0;
-    const photon_scene s = scene_of_pack(b);
+    const photon_scene s = stages_scene(b);
     baked_input in = {.geometry = out->geometry,
                       .tracks = &out->tracks,
                       .frames = (uint32_t)b->scene.frames,

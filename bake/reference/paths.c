@@ -14,7 +14,14 @@
 #define CHAIN 64u     /* mirrors and glass on the way of a view ray, at most */
 
 /* Dimensions beside a hit's own. */
-enum { OF_AREA = 0x243f6a88, OF_SKY = 0x13198a2e, OF_GLASS = 0x03707344, OF_PIXEL = 0x299f31d0, OF_CHAIN = 0x10000 };
+enum {
+    OF_AREA = 0x243f6a88,
+    OF_SKY = 0x13198a2e,
+    OF_GLASS = 0x03707344,
+    OF_PIXEL = 0x299f31d0,
+    OF_AMBIENT = 0x082efa98,
+    OF_CHAIN = 0x10000
+};
 
 static bool has_panes(const path_scene *p) {
     for (uint32_t i = 0; i < p->meta->triangles; i++)
@@ -195,7 +202,8 @@ static void look(const path_scene *p, float fx, float fy, const uint32_t *path, 
             look_at_lights(p, q, q->normal, false, (int)p->bounces - 1, &e, rays);
             for (int k = 0; k < 3; k++) {
                 const double factor = (q->glossy ? 1 : albedo[k]), all = albedo[k] + (double)m->specular[k];
-                const double own = (double)m->emission[k] + factor * e.open[k] / PI + all * (double)p->meta->ambient[k];
+                const double ambient = p->meta->ambient_radius > 0.0f ? 0 : all * (double)p->meta->ambient[k];
+                const double own = (double)m->emission[k] + factor * e.open[k] / PI + ambient;
                 out->direct[k] += out->weight[k] * own * (double)c->exposure;
                 out->limited[k] = out->weight[k] * factor * e.limited[k] / PI * (double)c->exposure;
                 out->unlimited[k] = out->weight[k] * factor * e.unlimited[k] / PI * (double)c->exposure;
@@ -335,6 +343,25 @@ static void look_at_wide(const walk *w, uint32_t between, uint32_t dimension, ui
     }
 }
 
+/* Ambient light, where surfaces keep it from each other: from one direction. */
+static void add_ambient(const walk *w, uint32_t dimension, uint32_t i) {
+    const path_vertex *s = &w->at;
+    const float radius = w->p->meta->ambient_radius;
+    const double all[3] = {(double)s->albedo.x + (double)s->specular.x, (double)s->albedo.y + (double)s->specular.y,
+                           (double)s->albedo.z + (double)s->specular.z};
+    float a, b;
+    if (!(radius > 0.0f))
+        return;
+    sequence_point(pcg(dimension ^ OF_AMBIENT), i, &a, &b);
+    const vec3 d = vec3_cosine(s->normal, a, b);
+    if (!(vec3_dot(d, s->face) > 0.0f))
+        return;
+    *w->rays += 1;
+    if (!photon_rays_occluded(&w->p->rays, s->position, d, radius))
+        for (int k = 0; k < 3; k++)
+            w->out->direct[k] += PI * (s->glossy ? all[k] : 1) * (double)w->p->meta->ambient[k];
+}
+
 /* Draws the direction in which the path goes on from w->at. False: it ends, under the surface. */
 static bool scatter(walk *w, bool first, float u, float v, vec3 *d) {
     const path_vertex *s = &w->at;
@@ -384,6 +411,7 @@ static void trace(const path_scene *p, const caustics *c, const view_sample *v, 
     vec3 o = v->place.position, d = {0, 0, 0};
     if (p->by_chance)
         look_at_wide(&w, 0, pcg(seed ^ pcg(0)), i);
+    add_ambient(&w, pcg(seed ^ pcg(0)), i);
     if (c)
         add_caustics(&w, 0);
     for (uint32_t hit = 1; hit <= most || !only_limited; hit++) {

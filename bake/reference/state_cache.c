@@ -26,7 +26,7 @@ static const char magic[8] = "VITREF2";
 typedef struct key_settings {
     uint32_t method, round, frame, every, bounces, width, height, direct_only[64];
     uint32_t filter, sky_lights;
-    float ray_offset, box_pad, background[3], ambient[3];
+    float ray_offset, box_pad, background[3], ambient[3], ambient_radius;
 } key_settings;
 
 static key_settings settings_of(const reference_input *in) {
@@ -44,6 +44,7 @@ static key_settings settings_of(const reference_input *in) {
     k.box_pad = s->box_pad;
     memcpy(k.background, s->background, sizeof k.background);
     memcpy(k.ambient, s->ambient, sizeof k.ambient);
+    k.ambient_radius = s->ambient_radius;
     k.filter = paths_filter(s);
     k.sky_lights = (s->effects & VIT_BIT(SKY_LIGHT)) != 0;
     for (uint32_t i = 0; in->direct_only && i < s->lights; i++)

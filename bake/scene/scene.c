@@ -11,6 +11,7 @@ static const config_field top_fields[] = {
     {"name", FIELD_TEXT, offsetof(scene, name), NULL},
     {"background", FIELD_VECTOR, offsetof(scene, background), RADIOMETRIC},
     {"ambient", FIELD_VECTOR, offsetof(scene, ambient), RADIOMETRIC},
+    {"ambient_radius", FIELD_NUMBER, offsetof(scene, ambient_radius), "[0, 1e6]"},
     {"light_units", FIELD_WORD, offsetof(scene, light_units), SCENE_LIGHT_UNITS},
     {"sky", FIELD_OTHER, 0, NULL},
     {"output", FIELD_OTHER, 0, NULL},

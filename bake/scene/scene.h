@@ -86,9 +86,10 @@ typedef struct scene {
     char name[SCENE_NAME];
     int width, height, frames;
     double fps;
-    double background[3]; /* W/(m2 sr) */
-    double ambient[3];    /* radiance of white matt surfaces in no other light, W/(m2 sr) */
-    int light_units;      /* LIGHT_UNITS_* */
+    double background[3];  /* W/(m2 sr) */
+    double ambient[3];     /* radiance of white matt surfaces in no other light, W/(m2 sr) */
+    double ambient_radius; /* m: surfaces nearer than that keep ambient light from each other; 0: it reaches everywhere */
+    int light_units;       /* LIGHT_UNITS_* */
     scene_sky sky;
     scene_mesh *meshes;
     int mesh_count;

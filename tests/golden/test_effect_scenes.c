@@ -59,6 +59,7 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(GLASS, LAMP, "kind = \"glass\"; ior = 1.5; absorption = [0.1, 0.2, 0.3];", "", "")                                       \
     X(CAUSTICS, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                \
     X(AMBIENT, LAMP, "", "ambient = [0.05, 0.06, 0.07];", "")                                                                  \
+    X(OCCLUSION, LAMP, "", "ambient = [0.5, 0.6, 0.7]; ambient_radius = 0.5;", "cache_error = 0.2;")                           \
     X(ANTIALIAS, LAMP, "", "", "antialias = 4;")                                                                               \
     X(AREA_LIGHTS, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = true;", "", "light_samples = 4;")                           \
     X(SKY_LIGHT, LAMP, "", "background = [0.3, 0.4, 0.5]; sky: { light = true; };", "sky_samples = 4;")                        \
@@ -164,6 +165,7 @@ static played play(const void *bytes, size_t size) {
 static played play_idle(const void *bytes, uint64_t effect) {
     static vit_light_sample dark[2 * VIT_PATTERNS];
     static vit_sky_texel texels[9];
+    static const vit_cache_cell no_cell = {.key = VIT_CACHE_EMPTY};
     pack_sections sections = pack_sections_of(bytes);
     vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
     vit_text why = {""};
@@ -192,6 +194,12 @@ static played play_idle(const void *bytes, uint64_t effect) {
         s.sky_samples = 2;
     if (effect == VIT_BIT(SKY_IMAGE))
         s.sky_size = 1;
+    if (effect == VIT_BIT(OCCLUSION)) { /* of black light */
+        s.effects |= VIT_BIT(AMBIENT);
+        s.cache_cells = s.cache_probes = s.cache_levels = 1;
+        s.ambient_radius = s.cache_step = 1.0f;
+        sections.data[VIT_SECTION_CACH] = &no_cell;
+    }
     sections.data[VIT_SECTION_META] = &s;
     sections.data[VIT_SECTION_EMIT] = dark;
     sections.data[VIT_SECTION_SKYT] = texels;

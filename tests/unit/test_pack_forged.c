@@ -10,7 +10,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 10", im->header->version = 10)                                                           \
+    X(header, newer_version, "version 11", im->header->version = 11)                                                           \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -30,7 +30,7 @@
     X(GEOM, size_short_by_a_record, "but META counts", shorten(im, VIT_SECTION_GEOM, sizeof(vit_triangle)))                    \
     X(GEOM, size_short_by_a_byte, "the gap before it", ENTRY(LITE).size -= 32, poke(im, ENTRY(GEOM).offset - 1))               \
     X(CAMS, gap_not_zero, "the gap before it", poke(im, ENTRY(CAMS).offset - 1))                                               \
-    X(META, gap_not_zero_after_table, "the gap before it", poke(im, 1000))                                                     \
+    X(META, gap_not_zero_after_table, "the gap before it", poke(im, 2000))                                                     \
     X(META, too_short, "expected", shorten(im, VIT_SECTION_META, 16))
 
 #define META_FAULTS(X)                                                                                                         \

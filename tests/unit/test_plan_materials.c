@@ -90,6 +90,8 @@ static void each_thing_calls_for_its_effect_alone(void **state) {
     (void)state;
     assert_true(added("") == 0);
     assert_true(added("ambient = (0, 0, 0.1);") == VIT_BIT(AMBIENT));
+    assert_true(added("ambient = (0, 0, 0.1); ambient_radius = 2;") == (VIT_BIT(AMBIENT) | VIT_BIT(OCCLUSION)));
+    assert_true(added("ambient_radius = 2;") == 0);
     assert_true(added(MAKES("specular = (0.1, 0, 0);")) == VIT_BIT(SPECULAR));
     assert_true(added(MAKES("specular = (0, 0, 0); exponent = 20;")) == 0);
     assert_true(added(MAKES("kind = \"mirror\";")) == (VIT_BIT(MIRROR) | VIT_BIT(CAUSTICS)));

@@ -289,6 +289,22 @@ static void follow_basis(const vit_pack *p) {
     }
 }
 
+/* As cache_find() of kernels/cache.clh does. */
+static void follow_cache(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_cache_cell *cells = p->section[VIT_SECTION_CACH];
+    for (vit_u32 i = 0; i < s->cache_cells; i++) {
+        const vit_u32 key = cells[i].key, mask = s->cache_cells - 1;
+        vit_u32 found = VIT_NONE;
+        for (vit_u32 k = 0, at = key & mask; k < s->cache_probes && found == VIT_NONE && cells[at].key <= key; k++) {
+            if (cells[at].key == key && ((cells[at].word[2] ^ cells[i].word[2]) & VIT_CACHE_TAG) == 0)
+                found = at;
+            at = (at + 1) & mask;
+        }
+        FUZZ_HOLDS(key == VIT_CACHE_EMPTY || found == i);
+    }
+}
+
 static void follow_patches(const vit_pack *p) {
     const vit_scene *s = p->scene;
     const vit_patch *patches = p->section[VIT_SECTION_PATC];
@@ -384,6 +400,7 @@ static void read_pack(const unsigned char *bytes, size_t size) {
     FUZZ_HOLDS(follow_tree(&pack) == pack.scene->triangles);
     follow_receiver_cells(&pack);
     follow_basis(&pack);
+    follow_cache(&pack);
     follow_patches(&pack);
     follow_gather(&pack);
     follow_transfer(&pack);

@@ -1,0 +1,148 @@
+#include "cache/occlusion.h"
+#include "cache/fit.h"
+#include "cache/points.h"
+#include "common/fail.h"
+#include "common/parallel.h"
+#include "common/progress.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define ENOUGH 32u     /* places that read a point */
+#define LEAST_RAYS 16u /* a place */
+#define MOST_RAYS 1024u
+#define EVEN 0.25              /* variance of even rays over that of chance, at most, where edges are few */
+#define CHUNK 256u             /* places */
+#define LEAST_OFFSETS 8.0f     /* ray_offsets that a box is wide, at least */
+#define LEAST_OF_RADIUS 256.0f /* and this part of the radius */
+
+typedef struct asking {
+    const occlusion_input *in;
+    const cache_sights *sights;
+    const cache_met *met;
+    uint32_t rays;
+    float *open;
+} asking;
+
+/* Part of the rays by the cosine about the normal that get to the radius; those below the surface do not. */
+static float open_at(const asking *a, const cache_sight *s, uint32_t number) {
+    const uint32_t shift = pcg(number), other = pcg(shift);
+    const float radius = (float)a->in->radius;
+    uint32_t open = 0;
+    for (uint32_t i = 0; i < a->rays; i++) {
+        const vec3 d = vec3_cosine(s->normal, lattice_u(i, shift), lattice_v(i, other));
+        open += vec3_dot(s->face, d) > 0.0f && !photon_rays_occluded(a->in->seen.rays, s->position, d, radius);
+    }
+    return (float)open / (float)a->rays;
+}
+
+static void ask(void *user, uint32_t chunk, uint64_t *sum) {
+    const asking *a = user;
+    for (uint32_t row = chunk * CHUNK; row < (chunk + 1) * CHUNK && row < a->met->taken_count; row++)
+        a->open[row] = open_at(a, a->sights->sight + a->met->taken[row], row);
+    *sum += 1;
+}
+
+static void tell(void *user, double fraction) {
+    const cache_sights_input *in = &((const asking *)user)->in->seen;
+    if (in->progress)
+        in->progress(in->user, fraction);
+}
+
+/* Boxes of the nearest place are as wide on the picture as wanted. */
+static void choose_levels(const occlusion_input *in, const cache_sights *s, vit_scene *meta) {
+    const float edge = s->pixel * (float)in->spacing; /* wanted, a metre of distance */
+    float step = float_max(s->nearest * edge, in->seen.rays->s->ray_offset * LEAST_OFFSETS);
+    step = float_max(step, (float)in->radius / LEAST_OF_RADIUS);
+    meta->cache_levels = 1;
+    while (meta->cache_levels < VIT_CACHE_LEVELS && s->farthest * edge > step * (float)(1u << (meta->cache_levels - 1u)))
+        meta->cache_levels++;
+    meta->cache_step = step;
+    meta->cache_detail = edge / step;
+}
+
+static uint32_t code_of(float value) {
+    const float code = floorf(value * VIT_CACHE_STEPS + 0.5f) + (float)VIT_CACHE_ZERO;
+    return (uint32_t)float_min(float_max(code, 1.0f), (float)VIT_CACHE_CODE);
+}
+
+/* The cells with what is known at their points, as a table. */
+static vit_status put(const cache_met *m, const float *value, occlusion *out, vit_text *why) {
+    vit_cache_cell *cells = malloc((m->cell_count + 1u) * sizeof *cells);
+    if (!cells)
+        return bake_fail(why, VIT_FAILED, "out of memory");
+    for (uint32_t i = 0; i < m->cell_count; i++) {
+        const cache_cell *c = m->cells + i;
+        cells[i] = (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
+        for (uint32_t q = 0; q < VIT_CACHE_POINTS; q++) {
+            const float v = value[i * VIT_CACHE_POINTS + q];
+            if (isfinite(v)) {
+                cells[i].word[VIT_CACHE_WORD(q)] |= code_of(v) << VIT_CACHE_SHIFT(q);
+                out->points++;
+            }
+        }
+    }
+    out->cells = m->cell_count;
+    const vit_status status = cache_table_fit(cells, m->cell_count, &out->table, why);
+    free(cells);
+    return status;
+}
+
+/* Rays of a place: those of all places share the error that a point may have. */
+static uint32_t rays_of(const occlusion_input *in, const cache_met *m) {
+    size_t points = 0;
+    for (size_t i = 0; i < (size_t)m->cell_count * VIT_CACHE_POINTS; i++)
+        points += m->places_of[i] > 0;
+    const double all = 0.25 * EVEN / (in->error * in->error) * (double)points, each = all / ((double)m->taken_count + 1.0);
+    uint32_t rays = LEAST_RAYS;
+    while ((double)rays < each && rays < MOST_RAYS)
+        rays += LEAST_RAYS;
+    return rays;
+}
+
+static vit_status find(const occlusion_input *in, const cache_sights *sights, cache_met *m, occlusion *out, vit_text *why) {
+    vit_scene meta = {.cache_levels = 1};
+    choose_levels(in, sights, &meta);
+    vit_status status = cache_met_find(&meta, sights, ENOUGH, m, why);
+    if (status != VIT_OK)
+        return status;
+    asking a = {.in = in, .sights = sights, .met = m, .rays = rays_of(in, m)};
+    a.open = malloc((m->taken_count + 1u) * sizeof *a.open);
+    uint64_t asked = 0;
+    const parallel_work work = {.run = ask,
+                                .done = tell,
+                                .user = &a,
+                                .step = 1,
+                                .count = (m->taken_count + CHUNK - 1) / CHUNK,
+                                .threads = in->seen.threads};
+    float *value = NULL;
+    if (a.open && parallel_run(&work, &asked))
+        value = cache_fit(m, a.open, &out->off);
+    status = value ? put(m, value, out, why) : bake_fail(why, VIT_FAILED, "out of memory");
+    free(a.open);
+    free(value);
+    out->levels = meta.cache_levels;
+    out->step = meta.cache_step;
+    out->detail = meta.cache_detail;
+    out->places = m->taken_count;
+    out->rays = a.rays;
+    return status;
+}
+
+vit_status occlusion_find(const occlusion_input *in, occlusion *out, vit_text *why) {
+    const double began = progress_now();
+    cache_sights sights = {0};
+    cache_met met = {0};
+    memset(out, 0, sizeof *out);
+    vit_status status = cache_sights_find(&in->seen, &sights, why);
+    if (status == VIT_OK)
+        status = find(in, &sights, &met, out, why);
+    cache_met_free(&met);
+    cache_sights_free(&sights);
+    out->seconds = progress_now() - began;
+    return status;
+}
+
+void occlusion_free(occlusion *o) {
+    cache_table_free(&o->table);
+    memset(o, 0, sizeof *o);
+}

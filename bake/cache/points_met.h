@@ -1,0 +1,38 @@
+/* points_met.c: which cells and points of the cache places read, and how much of each: the rows of a linear system. */
+#ifndef VIT_CACHE_POINTS_MET_H
+#define VIT_CACHE_POINTS_MET_H
+
+#include "cache/sights.h"
+
+#define CACHE_MOST_READ (2u * 3u * 27u) /* points that a place reads: of two levels and three sides */
+
+/* A cell that some place reads. */
+typedef struct cache_cell {
+    int32_t at[3];        /* cells from the origin, of its level */
+    uint32_t level, side; /* VIT_CACHE_SIDES */
+} cache_cell;
+
+/* A point and its weight. */
+typedef struct cache_read {
+    uint32_t point; /* VIT_CACHE_POINTS * cell + point of it */
+    float weight;
+} cache_read;
+
+typedef struct cache_met {
+    cache_cell *cells;
+    uint32_t cell_count, cell_room;
+    uint8_t *places_of;          /* a point: places taken that read it, up to `enough` */
+    uint32_t *slots, slot_count; /* a hash table of the cells */
+    uint32_t *taken;             /* of the sights: those that are rows */
+    uint32_t taken_count;
+    size_t *first;     /* a row: in `reads`; one more at the end */
+    cache_read *reads; /* weights of a row add up to 1 */
+    size_t read_count, read_room;
+} cache_met;
+
+/* Goes through the sights in their order and takes those that read a point which less than `enough` before it read. meta:
+ * cache_levels, cache_step, cache_detail. VIT_FAILED: out of memory. */
+vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, cache_met *out, vit_text *why);
+void cache_met_free(cache_met *m);
+
+#endif

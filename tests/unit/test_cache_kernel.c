@@ -1,0 +1,215 @@
+/* kernels/cache.clh against the baker's copy of it and against what interpolation must do.
+ *
+ * Why this is hard: a wrong hash, box or weight still gives numbers between 0 and 1 that look like occlusion. Strategy: cells
+ * get random values, and the kernel must give at random places what the baker's rows (points_met.h) say in double; places lie
+ * on both sides of the origin, on borders of boxes and on points themselves, boxes are from 1e-3 to 1e3 m wide. What all points
+ * agree upon must come out everywhere, and where a distance passes from one level to the next nothing may jump. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "cache/points.h"
+#include "cache/points_met.h"
+#include "cache/table.h"
+#include "host_lab.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PLACES = 4096 };
+
+typedef struct lab {
+    vit_scene scene;
+    cache_sights sights;
+    cache_met met;
+    cache_table table;
+    float places[7 * PLACES], open[PLACES];
+} lab;
+
+static uint32_t random_state;
+
+static float random_unit(void) {
+    return unit_float(random_state = pcg(random_state));
+}
+
+/* Places about the origin: some on borders of boxes, in corners of cells, at the origin. */
+static cache_sight place(uint32_t i, float step, float farthest) {
+    float p[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = (random_unit() - 0.5f) * 40.0f * step;
+        if (i % 4 == (uint32_t)k)
+            p[k] = floorf(p[k] / step) * step;
+        if (i % 64 == 5)
+            p[k] = 0.0f;
+        n[k] = random_unit() - 0.5f;
+        if (i % 8 == 1)
+            n[k] = k == (int)(i / 8 % 3) ? i % 16 > 8 ? -1.0f : 1.0f : 0.0f;
+    }
+    const vec3 normal = vec3_unit(vec3_load(n));
+    return (cache_sight){vec3_load(p), normal, normal, farthest * random_unit()};
+}
+
+static lab *open_lab(float step, uint32_t levels, float farthest) {
+    lab *l = calloc(1, sizeof *l);
+    vit_text why;
+    assert_non_null(l);
+    l->scene = (vit_scene){.cache_levels = levels, .cache_step = step, .cache_detail = 1.0f, .ambient_radius = 1.0f};
+    l->sights.sight = malloc(PLACES * sizeof *l->sights.sight);
+    assert_non_null(l->sights.sight);
+    l->sights.count = PLACES;
+    random_state = levels;
+    for (uint32_t i = 0; i < PLACES; i++) {
+        const cache_sight s = l->sights.sight[i] = place(i, step, farthest);
+        const float plane[7] = {s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z, s.distance};
+        for (int k = 0; k < 7; k++)
+            l->places[k * PLACES + (int)i] = plane[k];
+    }
+    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, &l->met, &why), VIT_OK);
+    assert_int_equal(l->met.taken_count, PLACES);
+    return l;
+}
+
+/* Cells with the values of points, of which every `hole`-th knows nothing. */
+static void fill(lab *l, uint32_t (*code)(uint32_t point), uint32_t hole) {
+    vit_text why;
+    vit_cache_cell *cells = calloc(l->met.cell_count + 1, sizeof *cells);
+    assert_non_null(cells);
+    for (uint32_t i = 0; i < l->met.cell_count; i++) {
+        const cache_cell *c = &l->met.cells[i];
+        cells[i] = (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
+        for (uint32_t q = 0; q < VIT_CACHE_POINTS; q++)
+            if (hole == 0 || (i * VIT_CACHE_POINTS + q) % hole != 0)
+                cells[i].word[q / 3] |= code(i * VIT_CACHE_POINTS + q) << q % 3 * 10;
+    }
+    assert_int_equal(cache_table_fit(cells, l->met.cell_count, &l->table, &why), VIT_OK);
+    assert_int_equal(l->table.dropped, 0);
+    assert_int_equal(l->table.filled, l->met.cell_count); /* no two cells have key and tag in common */
+    free(cells);
+    l->scene.cache_cells = l->table.count;
+    l->scene.cache_probes = l->table.longest;
+    host_lab_find()->open(&l->scene, l->table.records, l->places, PLACES, l->open);
+}
+
+static void close_lab(lab *l) {
+    cache_table_free(&l->table);
+    cache_met_free(&l->met);
+    cache_sights_free(&l->sights);
+    free(l);
+}
+
+static uint32_t any_code(uint32_t point) {
+    return 1 + pcg(point) % VIT_CACHE_CODE;
+}
+
+static uint32_t code_of_half(uint32_t point) {
+    (void)point;
+    return VIT_CACHE_ZERO + (uint32_t)VIT_CACHE_STEPS / 2;
+}
+
+/* What the rows say, in double; NAN: nothing. */
+static double expected(const lab *l, uint32_t row, uint32_t hole) {
+    double sum = 0.0, weight = 0.0;
+    for (size_t i = l->met.first[row]; i < l->met.first[row + 1]; i++) {
+        const uint32_t point = l->met.reads[i].point;
+        if (hole && point % hole == 0)
+            continue;
+        const double w = (double)l->met.reads[i].weight;
+        sum += w * ((double)any_code(point) - VIT_CACHE_ZERO) / (double)VIT_CACHE_STEPS;
+        weight += w;
+    }
+    return weight > 0.0 ? fmin(fmax(sum / weight, 0.0), 1.0) : NAN;
+}
+
+static void the_kernel_reads_what_the_baker_wrote(void **state) {
+    (void)state;
+    static const float steps[] = {1e-3f, 0.37f, 1e3f};
+    for (size_t s = 0; s < sizeof steps / sizeof *steps; s++)
+        for (uint32_t hole = 0; hole <= 3; hole += 3) {
+            lab *l = open_lab(steps[s], 4, 12.0f);
+            fill(l, any_code, hole);
+            uint32_t known = 0;
+            for (uint32_t i = 0; i < PLACES; i++) {
+                const double e = expected(l, i, hole);
+                if (!isfinite(e))
+                    continue;
+                known++;
+                if (!(fabs(e - (double)l->open[i]) < 2e-4)) /* weights of less than 1e-6 are left out by the baker */
+                    fail_msg("step %g, place %u: %g, expected %g", (double)steps[s], i, (double)l->open[i], e);
+            }
+            assert_in_range(known, PLACES - PLACES / 100, PLACES);
+            close_lab(l);
+        }
+}
+
+static void what_all_points_agree_upon_is_so_everywhere(void **state) {
+    (void)state;
+    lab *l = open_lab(0.25f, 3, 7.0f);
+    fill(l, code_of_half, 0);
+    for (uint32_t i = 0; i < PLACES; i++)
+        assert_true(fabsf(l->open[i] - 0.5f) < 1e-6f);
+    close_lab(l);
+}
+
+static void where_nothing_is_known_it_is_open(void **state) {
+    (void)state;
+    lab *l = open_lab(0.25f, 1, 1.0f);
+    fill(l, code_of_half, 1);
+    for (uint32_t i = 0; i < PLACES; i++)
+        assert_true(l->open[i] == 1.0f);
+    close_lab(l);
+}
+
+/* A place that goes away from the eye: cells of all levels about it know something. */
+static void levels_change_without_a_jump(void **state) {
+    (void)state;
+    lab *l = calloc(1, sizeof *l);
+    vit_text why;
+    assert_non_null(l);
+    l->scene = (vit_scene){.cache_levels = 5, .cache_step = 0.1f, .cache_detail = 1.0f};
+    l->sights.sight = malloc(PLACES * sizeof *l->sights.sight);
+    assert_non_null(l->sights.sight);
+    l->sights.count = PLACES;
+    const float p[3] = {-0.31f, 0.77f, -1.9f}, n[3] = {0.36f, -0.48f, 0.8f};
+    for (uint32_t i = 0; i < PLACES; i++) {
+        l->sights.sight[i] = (cache_sight){vec3_load(p), vec3_load(n), vec3_load(n), 20.0f * (float)i / PLACES};
+        for (uint32_t k = 0; k < 3; k++) {
+            l->places[k * PLACES + i] = p[k];
+            l->places[(3 + k) * PLACES + i] = n[k];
+        }
+        l->places[6 * PLACES + i] = l->sights.sight[i].distance;
+    }
+    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, &l->met, &why), VIT_OK);
+    fill(l, any_code, 0);
+    float least = 1.0f, most = 0.0f;
+    for (uint32_t i = 1; i < PLACES; i++) {
+        /* A step of distance is 0.005: of the fastest change, within half a unit of distance, a hundredth. */
+        assert_true(fabsf(l->open[i] - l->open[i - 1]) < 0.012f);
+        least = float_min(least, l->open[i]);
+        most = float_max(most, l->open[i]);
+    }
+    assert_true(most - least > 0.01f); /* levels do differ */
+    close_lab(l);
+}
+
+/* The nearest point has most of the weight, and a point that coincides with the place no more than all. */
+static void a_place_on_a_point_is_finite(void **state) {
+    (void)state;
+    const cache_place at = {.box = {0, 0, 0}, .in = {0.25f + 0.5f * 0.5f / 1024.0f, 0.5f, 0.5f}};
+    const int by[3] = {0, 0, 0};
+    const uint32_t middle = 512u << 10 | 512u << 20;
+    const float d2 = cache_distance2(&at, by, middle);
+    assert_true(d2 >= 0.0f && d2 < 1e-6f);
+    assert_true(cache_weight(d2) > 0.999f && cache_weight(0.0f) == 1.0f);
+    assert_true(cache_weight(VIT_CACHE_REACH * VIT_CACHE_REACH) < 1e-12f && cache_weight(27.0f) == 0.0f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_kernel_reads_what_the_baker_wrote), cmocka_unit_test(what_all_points_agree_upon_is_so_everywhere),
+        cmocka_unit_test(where_nothing_is_known_it_is_open),     cmocka_unit_test(levels_change_without_a_jump),
+        cmocka_unit_test(a_place_on_a_point_is_finite),
+    };
+    return cmocka_run_group_tests_name("cache kernel", tests, NULL, NULL);
+}
