@@ -278,8 +278,8 @@ static size_t put_webp(const char *name, const uint8_t texels[16]) {
 }
 
 #define PICTURE(texture, images)                                                                                               \
-    ",\"extensionsUsed\":[\"EXT_texture_webp\"],\"materials\":[{\"name\":\"m\",\"pbrMetallicRoughness\":"                      \
-    "{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{" texture "}],\"images\":[" images "]"
+    ",\"extensionsUsed\":[\"EXT_texture_webp\",\"KHR_texture_basisu\"],\"materials\":[{\"name\":\"m\","                        \
+    "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{" texture "}],\"images\":[" images "]"
 #define WEBP(n) "\"extensions\":{\"EXT_texture_webp\":{\"source\":" #n "}}"
 
 static void import_picture(const char *rest, model *m) {
@@ -315,6 +315,22 @@ static void webp_goes_before_what_stands_beside_it_if_it_can_be_read(void **stat
     }
 }
 
+static void a_plain_picture_does_for_one_that_is_not_read(void **state) {
+    model m;
+    vit_text why;
+    (void)state;
+    put_image(FILE_OF("image.tga"), 255);
+    put(FILE_OF("a.ktx2"), "\xabKTX 20\xbb\r\n\x1a\n");
+    import_picture(PICTURE("\"source\":0,\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}",
+                           "{\"uri\":\"image.tga\"},{\"uri\":\"a.ktx2\"}"),
+                   &m);
+    assert_int_equal(m.image_count, 1);
+    assert_string_equal(warnings, "");
+    model_free(&m);
+    assert_int_equal(import_file(LAB_FILE, true, &m, &why), VIT_OK);
+    model_free(&m);
+}
+
 static void a_picture_that_cannot_be_had_is_told_of(void **state) {
     model m;
     (void)state;
@@ -327,6 +343,7 @@ static void a_picture_that_cannot_be_had_is_told_of(void **state) {
     put(FILE_OF("a.ktx2"), "\xabKTX 20\xbb\r\n\x1a\n");
     import_picture(PICTURE("\"extensions\":{\"KHR_texture_basisu\":{\"source\":0}}", "{\"uri\":\"a.ktx2\"}"), &m);
     assert_non_null(strstr(warnings, "texture 'a.ktx2' is KTX2, which is not read"));
+    assert_non_null(strstr(warnings, "extension 'KHR_texture_basisu' is used and not read"));
     model_free(&m);
     import_picture(PICTURE("\"sampler\":0", "{\"uri\":\"a.ktx2\"}"), &m); /* no picture at all */
     assert_non_null(strstr(warnings, "texture 'textures[0]' is missing"));
@@ -343,6 +360,7 @@ int main(void) {
         T(a_draco_block_has_its_attributes_by_their_ids),
         T(draco_blocks_that_are_none_are_refused),
         T(webp_goes_before_what_stands_beside_it_if_it_can_be_read),
+        T(a_plain_picture_does_for_one_that_is_not_read),
         T(a_picture_that_cannot_be_had_is_told_of),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);

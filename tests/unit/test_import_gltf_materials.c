@@ -277,7 +277,11 @@ static void what_is_not_done_is_said(void **state) {
                   "extension 'KHR_materials_clearcoat' is used and not read"},
                  {"\"doubleSided\":true",
                   ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"translation\"}}]}]",
-                  "animations are left out"}};
+                  "animations are left out"},
+                 {PBR("\"metallicFactor\":0") "," TRANSMITS("0.4", ""), USED,
+                  "transmission of less than half of the light, or of what emits, is left out (material 'a'"},
+                 {PBR("\"metallicFactor\":0") ",\"emissiveFactor\":[1,1,1]," TRANSMITS("1", ""), USED,
+                  "transmission of less than half of the light, or of what emits, is left out"}};
     (void)state;
     put_texture();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -289,6 +293,9 @@ static void what_is_not_done_is_said(void **state) {
     }
     model m;
     import_gltf("\"doubleSided\":true", ",\"extensionsUsed\":[\"KHR_materials_variants\"]", "", &m); /* changes nothing */
+    assert_string_equal(warnings, "");
+    model_free(&m);
+    import_gltf(PBR("\"metallicFactor\":0") "," TRANSMITS("0", ""), USED, "", &m); /* so does this */
     assert_string_equal(warnings, "");
     model_free(&m);
 }

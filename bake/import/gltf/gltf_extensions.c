@@ -66,13 +66,29 @@ static bool note(gltf_file *g, const char *list, bool required) {
     return true;
 }
 
+/* All that the extension is for are pictures, and each has a plain one beside it. */
+static bool has_others_instead(const gltf_file *g, const char *name) {
+    static const char *const pictures[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
+    bool is_one = false;
+    uint32_t source;
+    for (size_t i = 0; i < sizeof pictures / sizeof *pictures; i++)
+        is_one = is_one || strcmp(name, pictures[i]) == 0;
+    for (uint32_t i = 0; is_one && i < gltf_count(g, "textures"); i++) {
+        const json_t *texture = gltf_item(g, "textures", i);
+        if (gltf_extension(texture, name) && !gltf_index(texture, "source", &source) &&
+            !gltf_index(gltf_extension(texture, "EXT_texture_webp"), "source", &source))
+            return false;
+    }
+    return is_one;
+}
+
 bool gltf_check_extensions(gltf_file *g) {
     const model *m = g->im->m;
     if (!note(g, "extensionsUsed", false) || !note(g, "extensionsRequired", true))
         return false;
     for (int i = 0; i < m->extension_count; i++) {
         const model_extension *e = &m->extensions[i];
-        if (e->file != g->im->file_index || e->read)
+        if (e->file != g->im->file_index || e->read || (!e->required && has_others_instead(g, e->name)))
             continue;
         if (e->required && g->im->rigour != MODEL_LISTS)
             return import_fail(g->im, "extension '%s' is required and not read", e->name);

@@ -26,7 +26,8 @@ typedef enum gltf_remark {
     GLTF_SAID_NORMALS,
     GLTF_SAID_ALPHA,
     GLTF_SAID_MORPHS,
-    GLTF_SAID_POSITIONS
+    GLTF_SAID_POSITIONS,
+    GLTF_SAID_TRANSMISSION
 } gltf_remark;
 
 /* Elements of an accessor as floats, one after another or `stride` apart. */

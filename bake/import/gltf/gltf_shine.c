@@ -79,12 +79,15 @@ static bool read_clear(gltf_file *g, const material_use *use, const json_t *mate
     const json_t *how = gltf_extension(material, "KHR_materials_transmission");
     float mean[4];
     *clear = false;
-    if (!how || largest(use->m.emission) > 0.0f)
+    if (!how)
         return true;
     if (!gltf_texture_mean(g, json_object_get(how, "transmissionTexture"), use->m.name, false, mean))
         return false;
-    *clear = (float)gltf_number(how, "transmissionFactor", 0.0) * mean[0] * (1.0f - metallic) >= CLEAR;
-    return true;
+    const float part = (float)gltf_number(how, "transmissionFactor", 0.0) * mean[0] * (1.0f - metallic);
+    *clear = part >= CLEAR && largest(use->m.emission) <= 0.0f;
+    return *clear || !(part > 0.0f) ||
+           gltf_remark_once(g, GLTF_SAID_TRANSMISSION,
+                            "transmission of less than half of the light, or of what emits, is left out", use->m.name);
 }
 
 /* Roughness and metalness may have textures, of which the mean over all texels is taken: lobes have none. */
