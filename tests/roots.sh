@@ -1,7 +1,7 @@
 #!/bin/sh
 # Same file, same pack, whatever the libraries of the system: makes a root of each release with debootstrap, builds the baker there (without
-# OpenCL, not optimised), and compares its packs of all mesh files among the cases, of the glTF samples and of small models with this machine's,
-# byte by byte; a file that both refuse is alike:
+# OpenCL, not optimised), and compares its packs of all mesh files among the cases, of the glTF samples, of small models and of what
+# tests/tools_models.sh has made with this machine's, byte by byte; a file that both refuse is alike:
 #   tests/roots.sh [folder for roots, default build/roots] [releases, default "trixie noble"] [tools, default build/release]
 # Needs to be root, debootstrap and the network; new roots take a quarter of an hour. Exit 1 if a pack or an exit status differs, or a root cannot
 # be made or built in.
@@ -35,8 +35,10 @@ for r in $releases; do
     for folder in gltf odd stanford cornell_box; do
         [ ! -d "$scenes/$folder" ] || cp -r "$scenes/$folder" "$roots/$r/models/"
     done
+    [ ! -d build/tools_models/models ] || cp -r build/tools_models/models "$roots/$r/models/tools"
     same=0
-    for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' -o -name '*.obj' -o -name '*.ply' -o -name '*.dae' -o -name '*.fbx' | sort); do
+    for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' -o -name '*.obj' -o -name '*.ply' -o -name '*.dae' -o -name '*.fbx' -o -name '*.3mf' \
+        -o -name '*.x3d' -o -name '*.amf' | sort); do
         rm -f "$roots/$r/there.vit" "$roots/here.vit"
         # shellcheck disable=SC2086 # options are several words
         chroot "$roots/$r" /src/build/debug-no-opencl/vitrine-bake "/models/$model" -o /there.vit $options 2> /dev/null

@@ -324,7 +324,7 @@ static void what_is_left_out_is_said(void **state) {
     static const char beams[] = MODEL_OF(
         "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" "
         "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07\"",
-        OBJECT("id=\"1\"", "<metadatagroup><metadata name=\"a\">b</metadata></metadatagroup>"
+        OBJECT("id=\"1\"", "<metadatagroup><metadata name=\"a\">b</metadata></metadatagroup><metadata name=\"c\"/>"
                            "<mesh><vertices>" SQUARE "</vertices><triangles>" TRIANGLE(0, 1, 2, "paint_color=\"4\"")
                                TRIANGLE(0, 2, 3, "paint_color=\"8\"") "</triangles><t:trianglesets><t:triangleset name=\"a\"/>"
                                                                       "</t:trianglesets><b:beamlattice><b:beams><b:beam "

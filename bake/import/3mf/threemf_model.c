@@ -300,38 +300,34 @@ typedef struct rule {
     const char *name;
     inside to;
     bool (*begin)(threemf_xml *x, const threemf_element *e);
-    bool skip; /* it means nothing to a picture */
 } rule;
 
 static const rule rules[] = {
-    {VERTICES, THREEMF_CORE, "vertex", LEAF, add_vertex, false},
-    {TRIANGLES, THREEMF_CORE, "triangle", LEAF, add_triangle, false},
-    {TOP, THREEMF_CORE, "model", MODEL, begin_model, false},
-    {MODEL, THREEMF_CORE, "metadata", LEAF, NULL, true},
-    {MODEL, THREEMF_CORE, "resources", RESOURCES, NULL, false},
-    {MODEL, THREEMF_CORE, "build", BUILD, NULL, false},
-    {RESOURCES, THREEMF_CORE, "object", OBJECT, begin_object, false},
-    {RESOURCES, THREEMF_CORE, "basematerials", GROUP, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "colorgroup", GROUP, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "texture2dgroup", GROUP, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "texture2d", LEAF, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "compositematerials", GROUP, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "multiproperties", GROUP, begin_group, false},
-    {RESOURCES, THREEMF_MATERIAL, "pbmetallicdisplayproperties", GROUP, begin_group, false},
-    {OBJECT, THREEMF_CORE, "mesh", MESH, NULL, false},
-    {OBJECT, THREEMF_CORE, "components", COMPONENTS, NULL, false},
-    {OBJECT, THREEMF_CORE, "metadatagroup", LEAF, NULL, true},
-    {MESH, THREEMF_CORE, "vertices", VERTICES, NULL, false},
-    {MESH, THREEMF_CORE, "triangles", TRIANGLES, NULL, false},
-    {COMPONENTS, THREEMF_CORE, "component", LEAF, add_component, false},
-    {BUILD, THREEMF_CORE, "item", LEAF, add_item, false},
-    {LEAF, THREEMF_CORE, "metadatagroup", LEAF, NULL, true},
-    {GROUP, THREEMF_CORE, "base", LEAF, threemf_add_property, false},
-    {GROUP, THREEMF_MATERIAL, "color", LEAF, threemf_add_property, false},
-    {GROUP, THREEMF_MATERIAL, "tex2coord", LEAF, threemf_add_property, false},
-    {GROUP, THREEMF_MATERIAL, "composite", LEAF, threemf_add_property, false},
-    {GROUP, THREEMF_MATERIAL, "multi", LEAF, threemf_add_property, false},
-    {GROUP, THREEMF_MATERIAL, "pbmetallic", LEAF, threemf_add_property, false},
+    {VERTICES, THREEMF_CORE, "vertex", LEAF, add_vertex},
+    {TRIANGLES, THREEMF_CORE, "triangle", LEAF, add_triangle},
+    {TOP, THREEMF_CORE, "model", MODEL, begin_model},
+    {MODEL, THREEMF_CORE, "resources", RESOURCES, NULL},
+    {MODEL, THREEMF_CORE, "build", BUILD, NULL},
+    {RESOURCES, THREEMF_CORE, "object", OBJECT, begin_object},
+    {RESOURCES, THREEMF_CORE, "basematerials", GROUP, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "colorgroup", GROUP, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "texture2dgroup", GROUP, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "texture2d", LEAF, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "compositematerials", GROUP, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "multiproperties", GROUP, begin_group},
+    {RESOURCES, THREEMF_MATERIAL, "pbmetallicdisplayproperties", GROUP, begin_group},
+    {OBJECT, THREEMF_CORE, "mesh", MESH, NULL},
+    {OBJECT, THREEMF_CORE, "components", COMPONENTS, NULL},
+    {MESH, THREEMF_CORE, "vertices", VERTICES, NULL},
+    {MESH, THREEMF_CORE, "triangles", TRIANGLES, NULL},
+    {COMPONENTS, THREEMF_CORE, "component", LEAF, add_component},
+    {BUILD, THREEMF_CORE, "item", LEAF, add_item},
+    {GROUP, THREEMF_CORE, "base", LEAF, threemf_add_property},
+    {GROUP, THREEMF_MATERIAL, "color", LEAF, threemf_add_property},
+    {GROUP, THREEMF_MATERIAL, "tex2coord", LEAF, threemf_add_property},
+    {GROUP, THREEMF_MATERIAL, "composite", LEAF, threemf_add_property},
+    {GROUP, THREEMF_MATERIAL, "multi", LEAF, threemf_add_property},
+    {GROUP, THREEMF_MATERIAL, "pbmetallic", LEAF, threemf_add_property},
 };
 
 static const rule *rule_of(inside in, const threemf_element *e) {
@@ -341,17 +337,19 @@ static const rule *rule_of(inside in, const threemf_element *e) {
     return NULL;
 }
 
+static bool is_metadata(const threemf_element *e) {
+    return e->ns == THREEMF_CORE && (strcmp(e->name, "metadata") == 0 || strcmp(e->name, "metadatagroup") == 0);
+}
+
 static bool begin(threemf_xml *x, const threemf_element *e, bool *skip) {
     reading *r = x->user;
     const inside in = r->depth > 0 ? r->in[r->depth - 1] : TOP;
     const rule *to = rule_of(in, e);
-    *skip = !to || to->skip;
+    *skip = !to;
     if (in == TOP && !to)
         return threemf_wrong(x, "<%.40s> is no <model> of 3MF", e->name);
     if (!to)
-        return threemf_leave_out(x->f, e);
-    if (*skip)
-        return true;
+        return is_metadata(e) || threemf_leave_out(x->f, e);
     /* No rule leads deeper than model, resources, object, mesh, triangles, triangle. */
     r->in[r->depth++] = to->to;
     if (in == RESOURCES && e->ns == THREEMF_MATERIAL && !threemf_note_extension(x->f, e->uri, false))
