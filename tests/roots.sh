@@ -35,7 +35,7 @@ for r in $releases; do
     for folder in gltf odd stanford cornell_box; do
         [ ! -d "$scenes/$folder" ] || cp -r "$scenes/$folder" "$roots/$r/models/"
     done
-    [ ! -d build/tools_models/models ] || cp -r build/tools_models/models "$roots/$r/models/tools"
+    [ ! -d build/tools_models/models ] || { mkdir -p "$roots/$r/models/tools" && cp build/tools_models/models/*.* "$roots/$r/models/tools"; }
     same=0
     for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' -o -name '*.obj' -o -name '*.ply' -o -name '*.dae' -o -name '*.fbx' -o -name '*.3mf' \
         -o -name '*.x3d' -o -name '*.amf' | sort); do

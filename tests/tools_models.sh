@@ -230,7 +230,7 @@ for kind in ('3mf', 'amf', 'x3d', 'obj', 'ply', 'stl'):
 import importDAE
 importDAE.export(d.Objects, 'models/freecad.dae')
 P
-for f in freecadcmd FreeCADCmd freecadcmd-python3; do ! command -v "$f" > /dev/null || { "$f" freecad.py > freecad.log 2>&1 < /dev/null; break; }; done
+freecadcmd -c "exec(open('freecad.py').read())" > freecad.log 2>&1 < /dev/null
 
 by_keys='keys = ( { eye = (0.6, 2.4, 6); target = (0, 0.8, 0); fov = 36; } );'
 lamp='{ type = "point"; keys = ( { position = (-2, 4, 3); power = (160, 160, 160); } ); }'

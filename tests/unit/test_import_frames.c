@@ -4,6 +4,7 @@
 #define FOLDER VIT_BUILD_DIR "/tests/unit/import_frames"
 #include "foreign_lab.h"
 #include "import/import_frame.h"
+#include <zip.h>
 
 static void frame_is(const model *m, double unit, unsigned up, unsigned unit_by, unsigned up_by) {
     const model_frame *f = &m->formats[0].frame;
@@ -155,6 +156,15 @@ static void units_and_axes_of_collada_that_are_none_are_told(void **state) {
 
 /* ---- AMF ---- */
 
+/* An archive of that text alone. */
+static void put_zip(const char *path, const char *text) {
+    int error;
+    zip_t *archive = zip_open(path, ZIP_CREATE | ZIP_TRUNCATE, &error);
+    assert_non_null(archive);
+    assert_true(zip_file_add(archive, "model.amf", zip_source_buffer(archive, text, strlen(text), 0), 0) >= 0);
+    assert_int_equal(zip_close(archive), 0);
+}
+
 static void files_of_amf_are_in_their_unit(void **state) {
     static const char amf[] =
         "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
@@ -171,11 +181,19 @@ static void files_of_amf_are_in_their_unit(void **state) {
     frame_is(&m, 0.0254, FRAME_Y, FRAME_BY_FILE, FRAME_BY_NOBODY);
     assert_true(m.materials[0].albedo[0] >= 0.6f); /* no colour is none, not black */
     model_free(&m);
+    put_zip(FILE_OF("t.amf"), text); /* as FreeCAD writes it */
+    import_good(FILE_OF("t.amf"), &m);
+    box_is(&m, 0, 0, 0, 0.0254, 0.0254, 0);
+    frame_is(&m, 0.0254, FRAME_Y, FRAME_BY_FILE, FRAME_BY_NOBODY);
+    model_free(&m);
     (void)snprintf(text, sizeof text, amf, "");
     put(FILE_OF("t.amf"), text);
     import_good(FILE_OF("t.amf"), &m);
     frame_is(&m, 0.001, FRAME_Y, FRAME_BY_FORMAT, FRAME_BY_NOBODY);
     model_free(&m);
+    (void)snprintf(text, sizeof text, amf, "unit=\"cubit\"");
+    put_zip(FILE_OF("t.amf"), text);
+    refuse(FILE_OF("t.amf"), false, "cubit");
 }
 
 /* ---- the rest ---- */

@@ -61,14 +61,22 @@ static FILE *open_plain(const char *path, size_t *size) {
     return file;
 }
 
-/* The text of COLLADA and X3D in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
-static void mend_text(assimp_scene *a, plain_file *f, size_t bytes, bool collada) {
+/* Formats whose text is read and mended here before Assimp sees it. */
+static bool is_mended(const char *path) {
+    return import_has_suffix(path, ".dae") || import_has_suffix(path, ".x3d") || import_has_suffix(path, ".amf");
+}
+
+/* That text in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
+static void mend_text(assimp_scene *a, plain_file *f, const char *path, size_t bytes) {
     char *text = malloc(bytes + 1);
     size_t size = text ? fread(text, 1, bytes, f->file) : 0;
-    if (size > 0 && size == bytes && collada)
+    const bool whole = size > 0 && size == bytes;
+    if (whole && import_has_suffix(path, ".dae"))
         size = assimp_mend_collada(a, text, size);
-    else if (size > 0 && size == bytes)
+    else if (whole && import_has_suffix(path, ".x3d"))
         assimp_read_x3d(a, text, size);
+    else if (whole)
+        text = assimp_read_amf(a, text, &size);
     FILE *mended = size > 0 ? fmemopen(text, size, "rb") : NULL;
     if (!mended) {
         free(text);
@@ -93,8 +101,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     }
     plain->file = file;
     import_note_file(a->im, path, bytes);
-    if (import_has_suffix(path, ".dae") || import_has_suffix(path, ".x3d"))
-        mend_text(a, plain, bytes, import_has_suffix(path, ".dae"));
+    if (is_mended(path))
+        mend_text(a, plain, path, bytes);
     *f = (struct aiFile){.ReadProc = read_some,
                          .WriteProc = write_nothing,
                          .TellProc = tell,

@@ -139,7 +139,7 @@ static bool find_frame(assimp_scene *a, ai_frame *out) {
     }
     if (!begins(reader, "Additive manufacturing"))
         return true;
-    if (!assimp_unit_amf(a->im, &out->stated.unit, &stated))
+    if (!assimp_unit_amf(a, &out->stated.unit, &stated))
         return false;
     out->stated.unit_by = stated ? FRAME_BY_FILE : FRAME_BY_FORMAT;
     return true;

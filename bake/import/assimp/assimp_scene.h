@@ -27,6 +27,7 @@ typedef struct assimp_scene {
     unsigned cut_count;
     double unit;             /* metres that the head of an X3D file says, or 0 */
     bool bad_unit, bad_axis; /* what the file says of them is none */
+    char amf_unit[64];       /* as the root element of an AMF file has it, or "" */
     unsigned lost_nodes;     /* that were NULL in Assimp's tree */
 } assimp_scene;
 
@@ -48,9 +49,10 @@ bool assimp_frame(assimp_scene *a, const scene_mesh *mesh, double place[12]);
 /* How Assimp's name of the reader that read the file begins, "Collada"; "" if it has none. */
 const char *assimp_reader(const assimp_scene *a);
 
-/* assimp_amf.c: metres a unit of an AMF file that is no archive; the format's default, 0.001, where it says none. False: the
- * unit is none. */
-bool assimp_unit_amf(importer *im, double *unit, bool *stated);
+/* assimp_amf.c: the text of an AMF file, unpacked if it is an archive; `text` has been freed then. Sets a->amf_unit. */
+char *assimp_read_amf(assimp_scene *a, char *text, size_t *size);
+/* Metres a unit; the format's default, 0.001, where the file says none. False: the unit is none. */
+bool assimp_unit_amf(const assimp_scene *a, double *unit, bool *stated);
 
 /* assimp_faces.c: cuts polygons into triangles; those with a bad index or more than 1024 corners are emptied and counted, those
  * of five and more emptied, too, and their triangles kept in a->cuts. */
