@@ -74,6 +74,14 @@ static void print_lights(const model *m, FILE *to) {
         print_name(to, l->name);
         (void)fprintf(to, " %s at ", list_word(SCENE_LIGHT_KINDS, (uint32_t)l->kind, kind));
         print_3(to, l->position);
+        if (l->kind != VIT_LIGHT_POINT) {
+            (void)fputs(" towards ", to);
+            print_3(to, l->direction);
+        }
+        if (l->kind == VIT_LIGHT_SPOT)
+            (void)fprintf(to, ", fading from %.4g to %.4g degrees off its axis", l->inner, l->outer);
+        if (l->range > 0.0)
+            (void)fprintf(to, ", range %.4g m", l->range);
         (void)fputs(": the file says ", to);
         print_3(to, l->stated);
         (void)fprintf(to, " %s, taken as ", list_stated_unit(l)[0] ? list_stated_unit(l) : "of no unit");

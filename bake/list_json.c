@@ -1,6 +1,7 @@
 #include "common/json.h"
 #include "import/import_format.h"
 #include "list_parts.h"
+#include "vitrine_pack.h"
 #include <inttypes.h>
 
 /* "name": */
@@ -84,6 +85,12 @@ static void lights(const model *m, FILE *to) {
         text(to, "power_unit", list_power_unit(l));
         (void)fputs(", \"range\": ", to);
         text_number(to, l->range, "null");
+        if (l->kind == VIT_LIGHT_SPOT) {
+            (void)fputs(", \"inner\": ", to);
+            text_number(to, l->inner, "null");
+            (void)fputs(", \"outer\": ", to);
+            text_number(to, l->outer, "null");
+        }
         (void)fputc('}', to);
     }
     (void)fputs("]", to);

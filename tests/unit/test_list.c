@@ -33,22 +33,25 @@ static void holds(const char *text, const char *what) {
 static void put_odd(void) {
     static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     put_bytes(FILE_OF("odd.bin"), corners, sizeof corners);
-    put(FILE_OF("odd.gltf"), "{\"asset\":{\"version\":\"2.0\",\"extensionsUsed\":[\"NOT_THIS\"]},\"extras\":{"
-                             "\"extensionsRequired\":[\"NOR_THIS\"]},\"scene\":0,"
-                             "\"extensionsUsed\" : [ \"KHR_lights_punctual\",\"VENDOR_strange\\\"one\" , "
-                             "\"KHR_materials_ior\"],\"extensionsRequired\":[\"VENDOR_needed\"],"
-                             "\"scenes\":[{\"nodes\":[0,1,2]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"translation\":"
-                             "[0,2,0],\"extensions\":{\"KHR_lights_punctual\":"
-                             "{\"light\":0}}},{\"name\":\"Eye\",\"camera\":0}],\"cameras\":[{\"type\":\"perspective\","
-                             "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":1,"
-                             "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","
-                             "\"intensity\":68.3,\"name\":\"extensionsUsed\"}]}},"
-                             "\"buffers\":[{\"uri\":\"odd.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
-                             "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
-                             "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
-                             "\"materials\":[{\"name\":\"m\\\"a\\\\t\\n</script>\"}],\"meshes\":[{\"name\":\"odd "
-                             "\xff\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
-                             "\"material\":0}]}]}");
+    put(FILE_OF("odd.gltf"),
+        "{\"asset\":{\"version\":\"2.0\",\"extensionsUsed\":[\"NOT_THIS\"]},\"extras\":{"
+        "\"extensionsRequired\":[\"NOR_THIS\"]},\"scene\":0,"
+        "\"extensionsUsed\" : [ \"KHR_lights_punctual\",\"VENDOR_strange\\\"one\" , "
+        "\"KHR_materials_ior\"],\"extensionsRequired\":[\"VENDOR_needed\"],"
+        "\"scenes\":[{\"nodes\":[0,1,2,3]}],\"nodes\":[{\"mesh\":0},{\"name\":\"Lamp\",\"translation\":"
+        "[0,2,0],\"extensions\":{\"KHR_lights_punctual\":"
+        "{\"light\":0}}},{\"name\":\"Eye\",\"camera\":0},{\"name\":\"Spot\",\"translation\":[0,3,0],"
+        "\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}}],\"cameras\":[{\"type\":\"perspective\","
+        "\"perspective\":{\"yfov\":1.0,\"aspectRatio\":1,"
+        "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\","
+        "\"intensity\":68.3,\"name\":\"extensionsUsed\"},{\"type\":\"spot\",\"intensity\":68.3,\"range\":4,"
+        "\"spot\":{\"innerConeAngle\":0.25,\"outerConeAngle\":0.5}}]}},"
+        "\"buffers\":[{\"uri\":\"odd.bin\",\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
+        "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
+        "\"materials\":[{\"name\":\"m\\\"a\\\\t\\n</script>\"}],\"meshes\":[{\"name\":\"odd "
+        "\xff\",\"primitives\":[{\"attributes\":{\"POSITION\":0},"
+        "\"material\":0}]}]}");
 }
 
 static void odd_names_are_valid_json(void **state) {
@@ -61,6 +64,8 @@ static void odd_names_are_valid_json(void **state) {
     holds(text, "{\"name\": \"Lamp\", \"kind\": \"point\", \"position\": [0, 2, 0]");
     holds(text, "\"stated_unit\": \"cd\"");
     holds(text, "\"power_unit\": \"W\"");
+    holds(text, "\"range\": 4, \"inner\": 14.3239448");
+    holds(text, ", \"outer\": 28.6478897");
     holds(text, "{\"name\": \"Eye\", \"eye\": [0, 0, 0]");
     holds(text, "\"triangles\": 1, \"places\": 1}");
     free(text);
@@ -74,7 +79,9 @@ static void people_see_one_line_a_thing(void **state) {
     holds(text, "\nmeshes 1\n  'odd ");
     holds(text, "\n  'm\"a\\t?</script>' matt, 1 triangles");
     holds(text,
-          "\nlights 1\n  'Lamp' point at (0, 2, 0): the file says (68.3, 68.3, 68.3) cd, taken as (1.257, 1.257, 1.257) W\n");
+          "\nlights 2\n  'Lamp' point at (0, 2, 0): the file says (68.3, 68.3, 68.3) cd, taken as (1.257, 1.257, 1.257) W\n"
+          "  'Spot' spot at (0, 3, 0) towards (0, 0, -1), fading from 14.32 to 28.65 degrees off its axis, range 4 m: the file "
+          "says (68.3, 68.3, 68.3) cd, taken as (1.257, 1.257, 1.257) W\n");
     holds(text, "\ncameras 1\n  'Eye' at (0, 0, 0)");
     holds(text, "'VENDOR_needed' required, not read");
     holds(text, "'KHR_materials_ior' used, read");
