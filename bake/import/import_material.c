@@ -55,16 +55,20 @@ static void apply_override(importer *im, material_use *use) {
     }
 }
 
-bool import_material(importer *im, unsigned source, const float tint[3], material_use **use) {
+bool import_material(importer *im, unsigned source, const float *tint, material_use **use) {
+    static const float white[3] = {1.0f, 1.0f, 1.0f};
+    const bool tinted = tint != NULL;
+    tint = tint ? tint : white;
     for (size_t i = 0; i < im->use_count; i++) {
         *use = &im->uses[i];
-        if ((*use)->source == source && !memcmp((*use)->tint, tint, sizeof(*use)->tint))
+        if ((*use)->source == source && (*use)->tinted == tinted && !memcmp((*use)->tint, tint, sizeof(*use)->tint))
             return true;
     }
     if (!import_room(im, &im->uses, &im->use_room, im->use_count + 1, sizeof *im->uses))
         return false;
     *use = &im->uses[im->use_count++];
     **use = (material_use){.source = source,
+                           .tinted = tinted,
                            .index = -1,
                            .alpha_by_letter = -1.0f,
                            .m = {.image = -1, .alpha = 1.0f, .exponent = 1.0f, .ior = 1.0f, .area_light = true}};

@@ -249,34 +249,32 @@ static bool make_normals(importer *im, instance *in) {
     return fine ? true : import_fail(im, "out of memory");
 }
 
-/* A vertex colour multiplies the albedo if it is the same all over the part. */
-static bool constant_color(importer *im, const mesh_part *part, float tint[3]) {
+/* A vertex colour multiplies the albedo if it is the same all over the part: that one, or NULL. False: strict. */
+static bool constant_color(importer *im, const mesh_part *part, const float **tint) {
     const float *c = part->color.at;
-    tint[0] = tint[1] = tint[2] = 1.0f;
-    if (!c)
-        return true;
-    for (size_t i = 0; i < part->vertices; i++) {
+    *tint = c;
+    for (size_t i = 0; c && i < part->vertices; i++) {
         const float *other = c + i * part->color.stride;
         if (!(other[0] == c[0] && other[1] == c[1] && other[2] == c[2])) {
             const bool said = im->warned_colors;
             im->warned_colors = true;
+            *tint = NULL;
             return said || import_not_done(im, "vertex colours that vary over a mesh are left out");
         }
     }
-    memcpy(tint, c, 3 * sizeof *tint);
     return true;
 }
 
 static bool add_instance(importer *im, instance *in) {
     const mesh_part *part = in->part;
-    float tint[3];
+    const float *tint;
     material_use *use;
     uint32_t material;
     for (size_t t = 0; t < part->triangles; t++)
         sift_triangle(im, in, t);
     if (in->triangles == 0)
         return true;
-    if (!constant_color(im, part, tint) || !import_material(im, part->material, tint, &use))
+    if (!constant_color(im, part, &tint) || !import_material(im, part->material, tint, &use))
         return false;
     if (use->hole) {
         if (im->clear == 0)

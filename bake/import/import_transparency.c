@@ -13,7 +13,6 @@ typedef struct tally {
 
 /* What becomes of the materials, without a word about them: they are all read again later. */
 static bool take_stock(importer *im, const uint64_t *of_material, unsigned materials, tally *t) {
-    static const float white[3] = {1.0f, 1.0f, 1.0f};
     model_warn_fn *warn = im->warn;
     const uint64_t warnings = im->m->warnings, highlights = im->m->default_highlights, principled = im->m->principled;
     bool fine = true;
@@ -22,7 +21,7 @@ static bool take_stock(importer *im, const uint64_t *of_material, unsigned mater
         material_use *use;
         if (of_material[i] == 0)
             continue;
-        fine = import_material(im, i, white, &use);
+        fine = import_material(im, i, NULL, &use);
         t->all += of_material[i];
         if (!fine || !use->hole)
             continue;

@@ -58,7 +58,8 @@ typedef struct importer {
 /* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
 typedef struct material_use {
     unsigned source;   /* material of the file */
-    float tint[3];     /* constant vertex colour, 1 if none */
+    bool tinted;       /* its vertices have a colour, all the same */
+    float tint[3];     /* that one, 1 if none */
     model_material m;  /* image still -1 */
     bool hole;         /* all of it is transparent: its triangles are dropped */
     bool cutoff_asked; /* the scene file has a cutoff for it, or the mesh file asks for holes beyond doubt */
@@ -181,9 +182,9 @@ const char *import_number(const char *at, const char *end, bool single, double *
 
 /* ---- import_material.c ---- */
 
-/* The use of material `source` with vertex colour `tint`; false: out of memory, or what the format's reader says. The pointer
- * is good until the next call. */
-bool import_material(importer *im, unsigned source, const float tint[3], material_use **use);
+/* The use of material `source` with vertex colour `tint`, NULL if there is none; false: out of memory, or what the format's
+ * reader says. The pointer is good until the next call. */
+bool import_material(importer *im, unsigned source, const float *tint, material_use **use);
 /* Loads the use's image and appends its material to the model, on first call. */
 bool import_material_index(importer *im, material_use *use, uint32_t *index);
 float import_clamp(float value, float most); /* to 0..most; NaN is 0 */

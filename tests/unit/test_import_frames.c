@@ -196,6 +196,20 @@ static void files_of_amf_are_in_their_unit(void **state) {
     refuse(FILE_OF("t.amf"), false, "cubit");
 }
 
+static void a_colour_of_amf_is_all_of_it(void **state) {
+    model m;
+    (void)state;
+    put(FILE_OF("t.amf"),
+        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><material id=\"2\"><color><r>1</r><g>0.5</g><b>0</b></color></material>"
+        "<object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
+        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume materialid=\"2\"><triangle><v1>0</v1><v2>1</v2>"
+        "<v3>2</v3></triangle></volume></mesh></object></amf>");
+    import_good(FILE_OF("t.amf"), &m);
+    assert_true(m.materials[0].albedo[0] == 1.0f && m.materials[0].albedo[1] == 0.5f && m.materials[0].albedo[2] == 0.0f);
+    model_free(&m);
+}
+
 /* ---- the rest ---- */
 
 static void a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says(void **state) {
@@ -278,6 +292,7 @@ int main(void) {
         T(white_space_in_collada_means_nothing),
         T(units_and_axes_of_collada_that_are_none_are_told),
         T(files_of_amf_are_in_their_unit),
+        T(a_colour_of_amf_is_all_of_it),
         T(a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says),
         T(x3d_is_in_its_unit_and_y_is_up),
         T(frames_in_words),

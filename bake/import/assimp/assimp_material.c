@@ -26,6 +26,8 @@ static void read_color(importer *im, material_use *use, const struct aiMaterial 
     float color[4] = {0.8f, 0.8f, 0.8f, 1.0f};
     if (!assimp_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
         (void)assimp_floats(ai, AI_MATKEY_COLOR_DIFFUSE, color, 3);
+    if (use->tinted && strcmp(use->m.name, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own grey: the file has no material */
+        color[0] = color[1] = color[2] = 1.0f;
     if (use->image[0] && stands_in(im->reader)) {
         use->has_plain = true;
         for (int i = 0; i < 3; i++)

@@ -1,5 +1,6 @@
 /* Materials: colour, emission, alpha; mtl_shine.c has the rest. */
 #include "import/obj/obj_file.h"
+#include "common/strict_math.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,16 +25,21 @@ static void read_texture(material_use *use, const mtl_map *map) {
     memcpy(use->uv, uv, sizeof uv);
 }
 
-/* Diffuse reflectance, before mtl_shine() has told what of it is not diffuse. */
+/* Diffuse reflectance, before mtl_shine() has told what of it is not diffuse. Colours of vertices are sRGB, as Blender and
+ * MeshLab write them; where no material stands beside them, they are all that there is. */
 static void read_color(importer *im, material_use *use, const mtl *m) {
     float color[3];
     memcpy(color, m->color, sizeof color);
+    if (use->tinted && !m->defined)
+        color[0] = color[1] = color[2] = 1.0f;
+    for (int i = 0; i < 3 && use->tinted; i++)
+        color[i] *= (float)srgb_linear((double)import_clamp(use->tint[i], 1.0f));
     if (use->image[0] && color[0] == 0.0f && color[1] == 0.0f && color[2] == 0.0f) {
         import_warn(im, "material '%.100s': black times a texture; the texture alone is used", use->m.name);
         color[0] = color[1] = color[2] = 1.0f;
     }
     for (int i = 0; i < 3; i++)
-        use->m.albedo[i] = import_clamp(color[i] * use->tint[i], VIT_MAX_ALBEDO);
+        use->m.albedo[i] = import_clamp(color[i], VIT_MAX_ALBEDO);
 }
 
 static bool read_emission(importer *im, material_use *use, const mtl *m) {
