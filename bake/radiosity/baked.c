@@ -151,7 +151,8 @@ static void second_step(void *user, double done) {
 }
 
 /* Light of the records: records x columns. Without lights there is none. fewer: by how much rays and cells are fewer. */
-static vit_status find(finding *f, const receiver *records, uint32_t count, uint32_t fewer, float *irradiance, vit_text *why) {
+static vit_status find(finding *f, const receiver *records, uint32_t count, uint32_t fewer, const transport_light *out,
+                       vit_text *why) {
     const baked_input *in = f->in;
     uint32_t lights = 0, of_light = CELLS_PER_RECEIVER * count;
     of_light = (of_light < CELLS_LEAST ? CELLS_LEAST : of_light < CELLS_MOST ? of_light : CELLS_MOST) / fewer;
@@ -174,12 +175,14 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
                                .user = f};
     for (uint32_t i = 0; i < t.state_count; i++)
         lights += t.states[i].count;
-    memset(irradiance, 0, (size_t)count * 3u * t.state_count * sizeof *irradiance);
-    return lights > 0 ? transport_find(&t, irradiance, &f->report, why) : VIT_OK;
+    memset(out->irradiance, 0, (size_t)count * 3u * t.state_count * sizeof *out->irradiance);
+    if (out->noise)
+        memset(out->noise, 0, count * sizeof *out->noise);
+    return lights > 0 ? transport_find(&t, out, &f->report, why) : VIT_OK;
 }
 
 /* Light of all receivers: receivers x columns. */
-static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, float *irradiance, vit_text *why) {
+static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, const transport_light *out, vit_text *why) {
     const uint32_t columns = 3 * f->states->count;
     uint32_t count = 0;
     receiver *records = malloc((r->count + 1u) * sizeof *records);
@@ -188,21 +191,27 @@ static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, float
     for (uint32_t i = 0; i < r->count; i++)
         if (!r->receivers[i].follows)
             records[count++] = r->receivers[i];
-    const vit_status status = find(f, records, count, fewer, irradiance, why);
+    const vit_status status = find(f, records, count, fewer, out, why);
     free(records);
     for (uint32_t i = r->count; i-- > 0 && status == VIT_OK;)
-        if (!r->receivers[i].follows)
-            memmove(irradiance + (size_t)i * columns, irradiance + (size_t)--count * columns, columns * sizeof *irradiance);
+        if (!r->receivers[i].follows) {
+            memmove(out->irradiance + (size_t)i * columns, out->irradiance + (size_t)--count * columns,
+                    columns * sizeof *out->irradiance);
+            if (out->noise)
+                out->noise[i] = out->noise[count];
+        }
     if (status == VIT_OK)
-        receivers_follow(r, irradiance, columns);
+        receivers_follow(r, out->irradiance, columns);
+    if (status == VIT_OK && out->noise)
+        receivers_follow(r, out->noise, 1);
     return status;
 }
 
 /* receivers_input.look */
-static vit_status look_first(void *user, const receivers *r, float *irradiance, vit_text *why) {
+static vit_status look_first(void *user, const receivers *r, float *irradiance, float *noise, vit_text *why) {
     finding *f = user;
     f->looks++;
-    return find_all(f, r, FEWER, irradiance, why);
+    return find_all(f, r, FEWER, &(transport_light){irradiance, noise}, why);
 }
 
 static vit_status look_again(finding *f, baked *out, vit_text *why) {
@@ -210,15 +219,17 @@ static vit_status look_again(finding *f, baked *out, vit_text *why) {
     s.count = f->in->live ? 1 : s.count;
     const uint32_t columns = 3 * s.count;
     const receivers *r = &out->receivers;
-    float *irradiance = malloc(((size_t)r->count * columns + 1u) * sizeof *irradiance);
-    if (!irradiance)
-        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
+    const transport_light light = {malloc(((size_t)r->count * columns + 1u) * sizeof *light.irradiance),
+                                   malloc((r->count + 1u) * sizeof *light.noise)};
     finding again = {.in = f->in, .states = &s};
-    vit_status status = find_all(&again, r, 1, irradiance, why);
+    vit_status status = light.irradiance && light.noise ? find_all(&again, r, 1, &light, why) : VIT_FAILED;
+    if (!light.irradiance || !light.noise || (status == VIT_OK && !receivers_smooth(r, light.irradiance, light.noise, columns)))
+        status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     out->report = again.report;
     if (status == VIT_OK)
-        status = keep(f->in, &s, irradiance, out, why);
-    free(irradiance);
+        status = keep(f->in, &s, light.irradiance, out, why);
+    free(light.irradiance);
+    free(light.noise);
     free(out->receivers.followers); /* they have said all */
     out->receivers.followers = NULL;
     out->receivers.follower_count = 0;

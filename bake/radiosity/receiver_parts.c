@@ -6,28 +6,31 @@
 #include <string.h>
 
 #define STEP 0.4f         /* of the light at the corners of a part, over its mean; half of that where parts are divided */
+#define RANGE 1.7         /* of three numbers: deviations between the least and the largest, on average */
 #define DIM 0.02f         /* of the mean of all: less counts as so much */
 #define MORE_STEP 1.3f    /* where there would be too many */
 #define MORE 1u           /* receivers of parts, at most so many times the records of cells, */
 #define MORE_LEAST 16384u /* or so many; parts of parts, always */
 
-/* How much the light of a piece's corners differs, over its mean; all columns together. */
-static float contrast_of(const placing *p, uint32_t piece, const float *irradiance, double mean) {
+/* How much the light of a piece's corners differs, over its mean, beyond what noise alone makes of three; all columns
+ * together. */
+static float contrast_of(const placing *p, uint32_t piece, const float *irradiance, const float *noise, double mean) {
     const uint32_t columns = p->in->columns;
     const vit_u32 *r = p->out->cells[piece].receiver;
-    double differ = 0.0, sum = 0.0;
+    double differ = -RANGE * ((double)noise[r[0]] + (double)noise[r[1]] + (double)noise[r[2]]) / 3.0, sum = 0.0;
     for (uint32_t c = 0; c < columns; c++) {
         const float a = irradiance[(size_t)r[0] * columns + c], b = irradiance[(size_t)r[1] * columns + c],
                     d = irradiance[(size_t)r[2] * columns + c];
         differ += (double)(float_max(a, float_max(b, d)) - float_min(a, float_min(b, d)));
         sum += ((double)a + (double)b + (double)d) / 3.0;
     }
-    return sum + DIM * mean > 0.0 ? (float)(differ / (sum + DIM * mean)) : 0.0f;
+    return differ > 0.0 && sum + DIM * mean > 0.0 ? (float)(differ / (sum + DIM * mean)) : 0.0f;
 }
 
-static uint32_t parts_for(float contrast, float step) {
+/* finest: parts of parts along an edge of a cell, at most. */
+static uint32_t parts_for(const receiver_piece *piece, float contrast, float step, float finest) {
     uint32_t parts = 1;
-    while (parts < VIT_RECEIVER_PARTS && contrast > step * (float)parts)
+    while (parts < VIT_RECEIVER_PARTS && contrast > step * (float)parts && (float)(2 * parts * piece->finer) <= finest)
         parts *= 2;
     return parts;
 }
@@ -39,7 +42,7 @@ static float find_step(const placing *p, const float *contrast) {
     for (float step = p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
         uint64_t nodes = 0;
         for (uint32_t i = 0; i < p->end - p->begin; i++) {
-            const uint32_t n = parts_for(contrast[i], step);
+            const uint32_t n = parts_for(p->pieces + p->begin + i, contrast[i], step, p->finest);
             nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
         }
         if (nodes <= most)
@@ -77,25 +80,6 @@ static bool add_parts(placing *p) {
     return true;
 }
 
-bool receivers_find_parts(placing *p, const float *irradiance) {
-    float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
-    double mean = 0.0;
-    if (!contrast)
-        return false;
-    for (size_t i = 0; i < (size_t)p->out->count * p->in->columns; i++)
-        mean += (double)irradiance[i] / p->out->count;
-    if (p->begin == 0)
-        receivers_part_records(p, irradiance, mean);
-    for (uint32_t i = p->begin; i < p->end; i++)
-        if (p->met[p->pieces[i].side] && (p->begin > 0 || p->looked_at[i]))
-            contrast[i - p->begin] = contrast_of(p, i, irradiance, mean);
-    const float step = find_step(p, contrast);
-    for (uint32_t i = p->begin; i < p->end; i++)
-        p->pieces[i].parts = parts_for(contrast[i - p->begin], step);
-    free(contrast);
-    return add_parts(p);
-}
-
 /* Slot of an edge, or the free one where it belongs. */
 static uint32_t edge_slot(const placing *p, uint32_t a, uint32_t b) {
     const uint64_t key = a < b ? (uint64_t)b << 32 | a : (uint64_t)a << 32 | b;
@@ -106,12 +90,8 @@ static uint32_t edge_slot(const placing *p, uint32_t a, uint32_t b) {
     return at;
 }
 
-/* An end that hangs may lie on a longer edge, and on an edge between two that carry something may hang: both stay straight. */
-static bool is_settled(const receiver *a, const receiver *b) {
-    return a->hangs || b->hangs || (a->carries && b->carries);
-}
-
-bool receivers_find_edges(placing *p) {
+/* A table for the edges of all pieces. False: out of memory. */
+static bool clear_edges(placing *p) {
     free(p->edges);
     free(p->edge_parts);
     p->edge_slots = 1024;
@@ -119,7 +99,59 @@ bool receivers_find_edges(placing *p) {
         p->edge_slots *= 2;
     p->edges = malloc(p->edge_slots * sizeof *p->edges);
     p->edge_parts = calloc(p->edge_slots, sizeof *p->edge_parts);
-    if (!p->edges || !p->edge_parts)
+    return p->edges && p->edge_parts;
+}
+
+static bool may_be_divided(const placing *p, uint32_t piece) {
+    return p->met[p->pieces[piece].side] && (p->begin > 0 || p->looked_at[piece]);
+}
+
+/* Beside a piece that is divided others are divided as often: what happens on the common edge is not to be seen at their
+ * corners. False: out of memory. */
+static bool grade(placing *p) {
+    if (!clear_edges(p))
+        return false;
+    for (uint32_t i = p->begin; i < p->end; i++)
+        for (int k = 0; k < 3; k++) {
+            const vit_u32 *r = p->out->cells[i].receiver;
+            const uint32_t at = edge_slot(p, r[k], r[(k + 1) % 3]), parts = p->pieces[i].parts;
+            p->edge_parts[at] = (uint8_t)(parts > p->edge_parts[at] ? parts : p->edge_parts[at]);
+        }
+    for (uint32_t i = p->begin; i < p->end; i++)
+        for (int k = 0; k < 3 && may_be_divided(p, i); k++) {
+            const vit_u32 *r = p->out->cells[i].receiver;
+            const uint32_t most = p->edge_parts[edge_slot(p, r[k], r[(k + 1) % 3])];
+            p->pieces[i].parts = most > p->pieces[i].parts ? most : p->pieces[i].parts;
+        }
+    return true;
+}
+
+bool receivers_find_parts(placing *p, const float *irradiance, const float *noise) {
+    float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
+    double mean = 0.0;
+    if (!contrast)
+        return false;
+    for (size_t i = 0; i < (size_t)p->out->count * p->in->columns; i++)
+        mean += (double)irradiance[i] / p->out->count;
+    if (p->begin == 0)
+        receivers_part_records(p, irradiance, mean);
+    for (uint32_t i = p->begin; i < p->end; i++)
+        if (may_be_divided(p, i))
+            contrast[i - p->begin] = contrast_of(p, i, irradiance, noise, mean);
+    const float step = find_step(p, contrast);
+    for (uint32_t i = p->begin; i < p->end; i++)
+        p->pieces[i].parts = parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
+    free(contrast);
+    return grade(p) && add_parts(p);
+}
+
+/* An end that hangs may lie on a longer edge, and on an edge between two that carry something may hang: both stay straight. */
+static bool is_settled(const receiver *a, const receiver *b) {
+    return a->hangs || b->hangs || (a->carries && b->carries);
+}
+
+bool receivers_find_edges(placing *p) {
+    if (!clear_edges(p))
         return false;
     for (uint32_t i = 0; i < p->end; i++) {
         const receiver_piece *piece = p->pieces + i;

@@ -236,9 +236,15 @@ static bool make_room_for_split(placing *p) {
 static bool take(placing *p, const cornered *c, const separations *s, uint32_t which, vit_receiver_cell *out) {
     receivers *o = p->out;
     const separation *apart = s->of[which] == VIT_NONE ? NULL : s->found + s->of[which];
-    const uint32_t alone = s->alone[which], front = apart ? apart->places : SEPARATION_EVERYWHERE,
+    const uint32_t alone = s->alone[which], buried = s->buried[which], front = apart ? apart->places : SEPARATION_EVERYWHERE,
                    back = SEPARATION_EVERYWHERE & ~front;
     out->split = VIT_NONE;
+    /* Where all places are inside of something, what there is outside of it is narrow: it is lit as the rest. */
+    if (apart && (!(front & ~buried) || !(back & ~buried))) {
+        const uint32_t open = front & ~buried ? front : back;
+        take_corners(p, c, open & ~alone ? open & ~alone : open, out->receiver);
+        return !p->failed;
+    }
     take_corners(p, c, front & ~alone ? front & ~alone : front, out->receiver);
     if (!apart)
         return !p->failed;
@@ -313,10 +319,10 @@ static bool take_cells(placing *p) {
 }
 
 /* Of pieces that may be divided now those within which light changes much. */
-static bool divide_pieces(placing *p, const float *irradiance) {
+static bool divide_pieces(placing *p, const float *irradiance, const float *noise) {
     receivers *o = p->out;
     separations s = {0};
-    bool fine = receivers_find_parts(p, irradiance) && receivers_find_edges(p) &&
+    bool fine = receivers_find_parts(p, irradiance, noise) && receivers_find_edges(p) &&
                 find_parted(p, p->piece_count - p->end, parted_part, &s);
     vit_receiver_cell *more = fine ? realloc(o->cells, (p->piece_count + 1u) * sizeof *more) : NULL;
     if (more)
@@ -337,12 +343,14 @@ static vit_status divide(placing *p, vit_text *why) {
     if (!receivers_start_pieces(p) || (in->look && !receivers_find_records(p)))
         status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
     for (int level = 0; level < VIT_RECEIVER_LEVELS && in->look && status == VIT_OK && p->begin < p->end; level++) {
-        float *irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance);
-        status =
-            irradiance ? in->look(in->user, p->out, irradiance, why) : bake_fail(why, VIT_FAILED, "receivers: out of memory");
-        if (status == VIT_OK && !divide_pieces(p, irradiance))
+        float *irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance),
+              *noise = malloc((p->out->count + 1u) * sizeof *noise);
+        status = irradiance && noise ? in->look(in->user, p->out, irradiance, noise, why)
+                                     : bake_fail(why, VIT_FAILED, "receivers: out of memory");
+        if (status == VIT_OK && !divide_pieces(p, irradiance, noise))
             status = bake_fail(why, VIT_FAILED, "receivers: out of memory");
         free(irradiance);
+        free(noise);
     }
     return status;
 }
@@ -413,6 +421,7 @@ static vit_status place_all(placing *p, vit_text *why) {
         const float more = fewer_seen  ? float_max(sqrtf((float)seen / (float)in->most) * 1.05f, GROWTH)
                            : more_seen ? float_max(sqrtf((float)seen / (float)in->least), SHRINKS)
                                        : 1.0f;
+        p->finest *= more;
         p->unseen *= fewer_unseen ? 4.0f : 1.0f;
         for (uint32_t i = 0; i < 2 * in->rays->s->triangle_count; i++)
             if (p->spacing[i] > 0.0f)
@@ -423,7 +432,7 @@ static vit_status place_all(placing *p, vit_text *why) {
 
 vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *why) {
     *out = (receivers){0};
-    placing p = {.in = in, .out = out};
+    placing p = {.in = in, .out = out, .finest = 4.0f * in->spacing};
     vit_status status = VIT_FAILED;
     if (receivers_find_spacing(&p))
         status = place_all(&p, why);

@@ -24,9 +24,9 @@ typedef struct receivers_input {
     uint32_t most;                  /* receivers wanted at most: the spacing grows until they are no more, or nearly so */
     uint32_t records;               /* whose light is computed for the first look, about: above that others follow them */
     unsigned threads;               /* 0: all cores; changes no byte */
-    /* A first look at the light of receivers, roughly: receivers x columns. Cells whose corners differ much are divided. NULL:
-     * none is. */
-    vit_status (*look)(void *user, const struct receivers *r, float *irradiance, vit_text *why);
+    /* A first look at the light of receivers, roughly: receivers x columns, and the deviation of each one's, all columns added
+     * up. Cells whose corners differ much are divided. NULL: none is. */
+    vit_status (*look)(void *user, const struct receivers *r, float *irradiance, float *noise, vit_text *why);
     void *user;
     uint32_t columns;
 } receivers_input;
@@ -65,5 +65,8 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
 void receivers_free(receivers *r);
 /* Light of followers, from that of records: receivers x columns. */
 void receivers_follow(const receivers *r, float *irradiance, uint32_t columns);
+/* receiver_smooth.c: takes out what is noise: irradiance, receivers x columns, and noise, as receivers_input.look gives them.
+ * False: out of memory. */
+bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns);
 
 #endif

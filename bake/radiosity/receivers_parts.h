@@ -29,6 +29,7 @@ typedef struct placing {
     bool *met;      /* a side: by the cameras' rays */
     float (*at)[2]; /* a seen side: where the nearest of them met it, barycentric weights */
     float unseen;   /* spacing of the others, m */
+    float finest;   /* receivers along the edge of a cell that its parts may have, at most: half a pixel apart */
     uint32_t step;  /* pixels between the cameras' rays, each way */
     receiver_sight *sights;
     size_t sight_count, sight_room;
@@ -53,8 +54,8 @@ bool receivers_find_spacing(placing *p);
 bool receivers_find_looked_at(placing *p);
 /* receiver_parts.c: `pieces`, none of the cells divided yet. */
 bool receivers_start_pieces(placing *p);
-/* Parts of pieces from `begin` to `end`, behind all others. irradiance: of all receivers. */
-bool receivers_find_parts(placing *p, const float *irradiance);
+/* Parts of pieces from `begin` to `end`, behind all others. irradiance, noise: of all receivers. */
+bool receivers_find_parts(placing *p, const float *irradiance, const float *noise);
 /* receiver_records.c: `followers` of the cells' receivers, of those that lie near records. */
 bool receivers_find_records(placing *p);
 /* Those whose records' light differs are records, too; mean: of the light of all, columns added up. */

@@ -144,52 +144,77 @@ static bool find_plane(const search *s, uint32_t among, separation *out) {
         const int score = pairs_between(s, a & among, b & among, true) - pairs_between(s, a & among, b & among, false);
         if (a && b && score > best) {
             best = score;
-            *out = (separation){.normal = {n.x, n.y, n.z}, .offset = offset, .places = a};
+            *out = (separation){.normal = {n.x, n.y, n.z}, .offset = offset, .places = a, .further = {VIT_NONE, VIT_NONE}};
         }
     }
     return best > 0;
 }
 
+/* Of a cell: what parts it, and what parts the places in front of that, and behind, once more. */
+typedef struct parting {
+    separation plane[3];
+    bool is[3];
+} parting;
+
 typedef struct finding {
     const separations_input *in;
-    separation *found; /* a cell */
-    bool *is;
-    uint32_t *alone;
+    parting *found; /* a cell */
+    uint32_t *alone, *buried;
 } finding;
 
 static void find(void *user, uint32_t number) {
     const finding *f = user;
     search s = {.rays = f->in->rays, .g = f->in->geometry};
     separation_cell c;
-    f->is[number] = false;
-    f->alone[number] = 0;
+    parting *out = f->found + number;
+    f->alone[number] = f->buried[number] = 0;
     if (!f->in->cell(f->in->user, number, &c) || looks_open(&s, &c))
         return;
     look_round(&s, &c);
-    f->alone[number] = find_buried(&s, &c);
+    f->alone[number] = f->buried[number] = find_buried(&s, &c);
     for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
         f->alone[number] |= (s.hidden[i] | 1u << i) == SEPARATION_EVERYWHERE ? 1u << i : 0u;
-    f->is[number] = find_plane(&s, SEPARATION_EVERYWHERE & ~f->alone[number], f->found + number) ||
-                    find_plane(&s, SEPARATION_EVERYWHERE, f->found + number);
+    const uint32_t not_alone = SEPARATION_EVERYWHERE & ~f->alone[number];
+    out->is[0] = find_plane(&s, not_alone, out->plane) || find_plane(&s, SEPARATION_EVERYWHERE, out->plane);
+    for (int k = 0; k < 2 && out->is[0]; k++)
+        out->is[1 + k] = find_plane(&s, not_alone & (k ? ~out->plane[0].places : out->plane[0].places), out->plane + 1 + k);
+}
+
+/* As lists. False: out of memory. */
+static bool list(const separations_input *in, const finding *f, separations *out) {
+    uint32_t first = 0, all = 0;
+    for (uint32_t i = 0; i < in->count; i++) {
+        const bool *is = f->found[i].is;
+        out->of[i] = is[0] ? first++ : VIT_NONE;
+        all += (uint32_t)is[0] + is[1] + is[2];
+    }
+    out->found = malloc((all + 1u) * sizeof *out->found);
+    out->count = out->found ? first : 0;
+    for (uint32_t i = 0; i < in->count && out->found; i++) {
+        parting *p = f->found + i;
+        for (int k = 0; k < 2; k++)
+            if (p->is[1 + k]) {
+                p->plane[0].further[k] = out->count;
+                out->found[out->count++] = p->plane[1 + k];
+            }
+        if (p->is[0])
+            out->found[out->of[i]] = p->plane[0];
+    }
+    return out->found != NULL;
 }
 
 bool separations_find(const separations_input *in, separations *out) {
     const size_t room = (size_t)in->count + 1u;
-    *out = (separations){.of = malloc(room * sizeof *out->of), .alone = malloc(room * sizeof *out->alone)};
-    finding f = {in, malloc(room * sizeof *f.found), malloc(room * sizeof *f.is), out->alone};
-    bool fine = out->of && out->alone && f.found && f.is;
+    *out = (separations){.of = malloc(room * sizeof *out->of),
+                         .alone = malloc(room * sizeof *out->alone),
+                         .buried = malloc(room * sizeof *out->buried)};
+    finding f = {in, calloc(room, sizeof *f.found), out->alone, out->buried};
+    bool fine = out->of && out->alone && out->buried && f.found;
     if (fine) {
         parallel_for(in->threads, in->count, find, &f);
-        for (uint32_t i = 0; i < in->count; i++)
-            out->of[i] = f.is[i] ? out->count++ : VIT_NONE;
-        out->found = malloc((out->count + 1u) * sizeof *out->found);
-        fine = out->found != NULL;
+        fine = list(in, &f, out);
     }
-    for (uint32_t i = 0; i < in->count && fine; i++)
-        if (f.is[i])
-            out->found[out->of[i]] = f.found[i];
     free(f.found);
-    free(f.is);
     if (!fine)
         separations_free(out);
     return fine;
@@ -198,6 +223,7 @@ bool separations_find(const separations_input *in, separations *out) {
 void separations_free(separations *s) {
     free(s->of);
     free(s->alone);
+    free(s->buried);
     free(s->found);
     *s = (separations){0};
 }

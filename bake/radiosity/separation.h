@@ -13,6 +13,7 @@
 typedef struct separation {
     float normal[3], offset; /* places p with normal . p > offset are in front */
     uint32_t places;         /* bits: places of the cell in front */
+    uint32_t further[2];     /* of separations.found: what parts those in front, those behind, once more; VIT_NONE: nothing */
 } separation;
 
 /* A cell that is looked at. */
@@ -33,9 +34,10 @@ typedef struct separations_input {
 
 typedef struct separations {
     uint32_t *of; /* a cell: what parts it, of `found`; VIT_NONE: all its places see each other, or no plane explains why not */
-    uint32_t *alone; /* a cell, bits: places inside of what stands there, or that no other place sees */
+    uint32_t *buried; /* a cell, bits: places inside of what stands there */
+    uint32_t *alone;  /* a cell, bits: these, and places that no other sees */
     separation *found;
-    uint32_t count; /* of found */
+    uint32_t count; /* of found: those of cells first, then further ones */
 } separations;
 
 /* Place i of a cell, 0 <= i < SEPARATION_PLACES, even over it: barycentric weights in its triangle. */
@@ -50,6 +52,21 @@ bool separation_sees(const photon_rays *rays, vec3 a, vec3 b);
 static inline bool separations_front(const separations *s, uint32_t cell, vec3 p) {
     const separation *apart = s->of[cell] == VIT_NONE ? NULL : s->found + s->of[cell];
     return !apart || vec3_dot(vec3_load(apart->normal), p) > apart->offset;
+}
+
+#define SEPARATION_PARTS 4u
+
+/* Which part of the cell the place is in, 0 <= part < SEPARATION_PARTS: the high bit says behind which plane, the low one
+ * behind which further one. */
+static inline uint32_t separations_part(const separations *s, uint32_t cell, vec3 p) {
+    if (s->of[cell] == VIT_NONE)
+        return 0;
+    const separation *first = s->found + s->of[cell];
+    const uint32_t behind = !(vec3_dot(vec3_load(first->normal), p) > first->offset);
+    if (first->further[behind] == VIT_NONE)
+        return 2 * behind;
+    const separation *next = s->found + first->further[behind];
+    return 2 * behind + !(vec3_dot(vec3_load(next->normal), p) > next->offset);
 }
 
 /* For cells of an edge in metres. m */

@@ -2,6 +2,7 @@
 #include "common/fail.h"
 #include "common/parallel.h"
 #include "radiosity/transport_parts.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@ typedef struct passing {
     const transport_rows *rows;
     const float *from, *albedo; /* albedo: 3 a number, or NULL */
     float *to;
+    bool add; /* to what is there */
 } passing;
 
 /* What a row's cells send it. */
@@ -20,7 +22,8 @@ static void pass_row(void *user, uint32_t row) {
     const passing *p = user;
     const uint32_t columns = p->t->columns;
     float *to = p->to + (size_t)row * columns;
-    memset(to, 0, columns * sizeof *to);
+    if (!p->add)
+        memset(to, 0, columns * sizeof *to);
     if (row >= p->rows->count)
         return;
     for (size_t k = p->rows->first[row]; k < p->rows->first[row + 1]; k++) {
@@ -30,6 +33,25 @@ static void pass_row(void *user, uint32_t row) {
     }
     for (uint32_t c = 0; c < columns && p->albedo; c++)
         to[c] *= p->albedo[3 * (size_t)row + c % 3u];
+}
+
+/* The deviation of what a row's rays brought. A ray that chance sent stands for one of all; weights below that are of rays
+ * that were aimed. */
+static void find_noise(void *user, uint32_t row) {
+    const passing *p = user;
+    const double one = 1.0 / p->t->in->receiver_rays;
+    double squares = 0.0, sum = 0.0;
+    for (size_t k = p->rows->first[row]; k < p->rows->first[row + 1]; k++) {
+        const float *from = p->from + (size_t)p->rows->to[k] * p->t->columns;
+        const double factor = (double)p->rows->factor[k];
+        double all = 0.0;
+        for (uint32_t c = 0; c < p->t->columns; c++)
+            all += (double)from[c];
+        squares += all * all * factor * (factor < one ? factor : one);
+        sum += factor * all;
+    }
+    const double variance = squares - sum * sum * one;
+    p->to[row] = variance > 0.0 ? (float)sqrt(variance) : 0.0f;
 }
 
 static double sum_of(const transport *t, const float *light) {
@@ -85,7 +107,7 @@ static void find_albedo(void *user, uint32_t n) {
     transport_albedo(a->t, n, a->out + 3 * (size_t)n);
 }
 
-static bool compute(transport *t, float *irradiance) {
+static bool compute(transport *t, const transport_light *out) {
     const size_t numbers = (size_t)t->count * t->columns;
     float *radiosity = malloc((numbers + 1u) * sizeof *radiosity),
           *albedo = malloc((3u * (size_t)t->count + 1u) * sizeof *albedo);
@@ -93,11 +115,15 @@ static bool compute(transport *t, float *irradiance) {
     if (fine) {
         albedos a = {t, albedo};
         parallel_for(t->in->threads, t->count, find_albedo, &a);
+        transport_near_light(t, radiosity, out->irradiance);
         fine = reflect(t, radiosity, albedo) && transport_aim(t, radiosity);
     }
     if (fine) {
-        const passing p = {.t = t, .rows = &t->gathers, .from = radiosity, .to = irradiance};
-        parallel_for(t->in->threads, t->in->receiver_count, pass_row, (void *)(uintptr_t)&p);
+        passing p = {.t = t, .rows = &t->gathers, .from = radiosity, .to = out->irradiance, .add = true};
+        parallel_for(t->in->threads, t->in->receiver_count, pass_row, &p);
+        p.to = out->noise;
+        if (out->noise)
+            parallel_for(t->in->threads, t->in->receiver_count, find_noise, &p);
     }
     free(radiosity);
     free(albedo);
@@ -114,13 +140,15 @@ static void drop(transport *t) {
     free(t->places);
     transport_drop_rows(&t->gathers);
     transport_drop_rows(&t->bounces);
+    free(t->near);
+    free(t->varies);
 }
 
-vit_status transport_find(const transport_input *in, float *irradiance, transport_report *report, vit_text *why) {
+vit_status transport_find(const transport_input *in, const transport_light *out, transport_report *report, vit_text *why) {
     *report = (transport_report){0};
     transport t = {.in = in, .report = report, .columns = 3 * in->state_count};
     vit_text divided = {""};
-    const bool fine = transport_divide(&t, &divided) && transport_gather(&t) && compute(&t, irradiance);
+    const bool fine = transport_divide(&t, &divided) && transport_gather(&t) && compute(&t, out);
     report->cells = t.count;
     report->splits = t.apart.count;
     drop(&t);

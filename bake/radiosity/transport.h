@@ -42,7 +42,13 @@ typedef struct transport_report {
     uint32_t reflections; /* that were computed */
 } transport_report;
 
-/* irradiance: receivers x states x 3, W/m2. VIT_FAILED: out of memory. */
-vit_status transport_find(const transport_input *in, float *irradiance, transport_report *report, vit_text *why);
+/* Of receivers. */
+typedef struct transport_light {
+    float *irradiance; /* receivers x states x 3, W/m2 */
+    float *noise;      /* deviation, about, of a receiver's irradiance, all states and channels added up, W/m2; may be NULL */
+} transport_light;
+
+/* Fills what `out` points at. VIT_FAILED: out of memory. */
+vit_status transport_find(const transport_input *in, const transport_light *out, transport_report *report, vit_text *why);
 
 #endif

@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BRIGHT 3.0    /* times what a receiver sees on average */
-#define FAR_AWAY 8.0f /* squared distance over a cell's area */
+#define BRIGHT 3.0 /* times what a receiver sees on average */
 #define LEAST_COSINE 0.1f
 #define AIMED_RAYS 2u /* a receiver has a ray aimed for so many that are not */
 #define GROUP 128u    /* neighbours: half of them learn from the rays of the other half */
@@ -42,7 +41,7 @@ typedef struct targets {
 } targets;
 
 static float area_of(const transport *t, uint32_t number) {
-    return cells_area(&t->cells, t->in->geometry, t->cell[number] / 2);
+    return cells_area(&t->cells, t->in->geometry, transport_cell(t, number));
 }
 
 /* Do more rays go to the cell aimed than by chance? Seen from its middle, and the same answer whoever asks. */
@@ -50,11 +49,12 @@ static bool is_aimed(const targets *g, vec3 from, vec3 normal, uint32_t number) 
     const transport *t = g->a->t;
     if (!(g->share[number] > 0.0f))
         return false;
-    const vec3 face = side_face(t->in->geometry, t->cells.side_of[t->cell[number] / 2]),
-               way = vec3_sub(cells_center(&t->cells, t->in->geometry, t->cell[number] / 2), from), d = vec3_unit(way);
+    const uint32_t cell = transport_cell(t, number);
+    const vec3 face = side_face(t->in->geometry, t->cells.side_of[cell]),
+               way = vec3_sub(cells_center(&t->cells, t->in->geometry, cell), from), d = vec3_unit(way);
     const float area = area_of(t, number), d2 = vec3_dot(way, way), here = float_max(vec3_dot(normal, d), LEAST_COSINE),
                 there = float_max(-vec3_dot(face, d), LEAST_COSINE);
-    if (!(d2 > FAR_AWAY * area))
+    if (!transport_is_far(t, cell, from))
         return false;
     const double by_chance =
         (double)t->in->receiver_rays * (double)here * (double)there * (double)area / (3.14159265358979 * (double)d2);
@@ -75,19 +75,19 @@ static uint32_t chosen(const targets *g, double at) {
 
 /* The place of a bright cell that chance finds. False: it is on the other side of what stands on the cell. */
 static bool place_on(const transport *t, uint32_t number, float x, float y, vec3 *out) {
-    const uint32_t cell = t->cell[number] / 2;
+    const uint32_t cell = transport_cell(t, number);
     const cell_corners c = cells_corners(&t->cells, cell);
     const float u = sqrtf(x), w[3] = {1.0f - u, u * (1.0f - y), u * y};
     const float b1 = w[0] * c.b1[0] + w[1] * c.b1[1] + w[2] * c.b1[2], b2 = w[0] * c.b2[0] + w[1] * c.b2[1] + w[2] * c.b2[2];
     *out = side_place(t->in->geometry, t->cells.side_of[cell], b1, b2);
-    return separations_front(&t->apart, cell, *out) == ((t->cell[number] & 1) == 0);
+    return separations_part(&t->apart, cell, *out) == t->cell[number] % SEPARATION_PARTS;
 }
 
 /* Form factor of one ray from a receiver to the place, over the density of such rays; 0: they do not see each other. */
 static float aimed(const targets *g, const receiver *r, vec3 from, vec3 normal, uint32_t number, vec3 to) {
     const transport *t = g->a->t;
     const float offset = t->in->rays->s->ray_offset;
-    const vec3 face = side_face(t->in->geometry, t->cells.side_of[t->cell[number] / 2]), way = vec3_sub(to, from),
+    const vec3 face = side_face(t->in->geometry, t->cells.side_of[transport_cell(t, number)]), way = vec3_sub(to, from),
                d = vec3_unit(way);
     const float here = vec3_dot(normal, d), there = -vec3_dot(face, d), d2 = vec3_dot(way, way);
     const vec3 own = side_face(t->in->geometry, r->side);
@@ -139,7 +139,7 @@ static void choose(targets *g, uint32_t first, uint32_t end, uint32_t half) {
     for (uint32_t row = first + !half; row < end; row += 2)
         for (size_t k = rows->first[row]; k < rows->first[row + 1]; k++) {
             const double got = (double)rows->factor[k] * (double)a->bright[rows->to[k]];
-            g->got[a->t->cell[rows->to[k]] / 2 / BLOCK] += got;
+            g->got[transport_cell(a->t, rows->to[k]) / BLOCK] += got;
             all += got;
         }
     const float least = (float)(BRIGHT * all / ((end - first + half) / 2));
@@ -201,11 +201,11 @@ static bool find_blocks(aiming *a) {
     if (!a->block || !a->of_block)
         return false;
     for (uint32_t n = 0; n < t->count; n++)
-        a->block[t->cell[n] / 2 / BLOCK + 2]++;
+        a->block[transport_cell(t, n) / BLOCK + 2]++;
     for (uint32_t b = 2; b < a->blocks + 2u; b++)
         a->block[b] += a->block[b - 1];
     for (uint32_t n = 0; n < t->count; n++)
-        a->of_block[a->block[t->cell[n] / 2 / BLOCK + 1]++] = n;
+        a->of_block[a->block[transport_cell(t, n) / BLOCK + 1]++] = n;
     return true;
 }
 

@@ -6,7 +6,7 @@
 
 #define LEAST_SAMPLES 4u    /* of each light that is found by chance, at each of a cell's places */
 #define MORE_LOOKS 384.0    /* at lights, per cell that is wanted, shared out by how much each adds to the error */
-#define SHADOWS 64u         /* lights whose last shadow is known; others share */
+#define VARIES 0.25         /* deviation over mean of direct light, from which on a cell's mean is not good enough close by */
 #define BLOCK 64u           /* cells that are alike in how light varies on them */
 #define MOST_SAMPLES 16384u /* of a cell */
 
@@ -22,6 +22,7 @@ typedef struct lighting {
     double all;       /* of weight, summed */
     double looks;     /* that a place takes, at least: lights of all states */
     double *variance; /* a number: of one sample, all columns added up */
+    double *mean;     /* a number: of the same samples */
     uint32_t *more;   /* a number: further samples */
     bool again;       /* these are taken */
 } lighting;
@@ -51,11 +52,6 @@ static spot spot_at(const transport *t, const transport_place *p, float edge) {
                   .normal = at.normal,
                   .albedo = albedo};
 }
-
-/* What stopped the last ray to a light, for as many lights; places near each other are often in the same shadow. */
-typedef struct shadows {
-    uint32_t triangle[SHADOWS], last;
-} shadows;
 
 static vec3 light_that_passes(const transport *t, const spot *at, const arrival *a, uint32_t *likely) {
     float mirror;
@@ -125,14 +121,14 @@ static float numbers(uint32_t seed, uint32_t i, float *v) {
 
 /* One sample of a cell's radiosity in all states; repeats: of lights that are found by chance. Returns the sum. */
 static double light_place(const transport *t, const spot *at, uint32_t seed, uint32_t first, uint32_t repeats, float scale,
-                          float *to, shadows *known, uint64_t *rays) {
+                          float *to, transport_shadows *known, uint64_t *rays) {
     double sum = 0.0;
     uint32_t n = 0;
     for (uint32_t s = 0; s < t->in->state_count; s++)
         for (uint32_t i = 0; i < t->in->states[s].count; i++) {
             const photons_light *light = t->in->states[s].lights + i;
             const uint32_t looks = is_sampled(light) ? repeats : 1;
-            uint32_t *likely = known->triangle + n++ % SHADOWS;
+            uint32_t *likely = known->triangle + n++ % TRANSPORT_SHADOWS;
             *likely = *likely == VIT_NONE ? known->last : *likely;
             for (uint32_t k = 0; k < looks; k++) {
                 float v;
@@ -148,6 +144,12 @@ static double light_place(const transport *t, const spot *at, uint32_t seed, uin
     return sum;
 }
 
+void transport_light_at(const transport *t, uint32_t n, const transport_place *p, uint32_t seed, float scale, float *to,
+                        transport_shadows *known, uint64_t *rays) {
+    const spot at = spot_at(t, p, t->edge[t->cells.side_of[transport_cell(t, n)]]);
+    light_place(t, &at, seed, 0, 1, scale, to, known, rays);
+}
+
 /* At how many places a cell is looked at first: fewer where receivers get little from it and looks are many. */
 static uint32_t first_places(const lighting *l, uint32_t n) {
     const double wanted = l->all > 0.0 ? ceil(MORE_LOOKS / l->looks * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
@@ -160,9 +162,9 @@ static void light_cell(void *user, uint32_t n, uint64_t *rays) {
     const transport *t = l->t;
     float *to = l->radiosity + (size_t)n * t->columns;
     const uint32_t places = first_places(l, n);
-    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    const float edge = t->edge[t->cells.side_of[transport_cell(t, n)]];
     double sum = 0.0, squares = 0.0;
-    shadows known;
+    transport_shadows known;
     memset(&known, 0xff, sizeof known);
     memset(to, 0, t->columns * sizeof *to);
     for (uint32_t p = 0; p < places; p++) {
@@ -172,14 +174,14 @@ static void light_cell(void *user, uint32_t n, uint64_t *rays) {
         squares += all * all;
     }
     /* A single place tells nothing of how light varies: as much as it is itself. */
-    const double mean = sum / places;
+    const double mean = l->mean[n] = sum / places;
     const double spread = squares - mean * sum; /* rounding may make it negative */
     l->variance[n] = places == 1 ? mean * mean : spread > 0.0 ? spread / (places - 1) : 0.0;
 }
 
 /* A place of the cell's part that chance finds, if one of the places where rays met it sees it. */
 static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge, transport_place *out) {
-    const uint32_t cell = t->cell[n] / 2, part = t->cell[n] & 1, side = t->cells.side_of[cell];
+    const uint32_t cell = transport_cell(t, n), side = t->cells.side_of[cell];
     const cell_corners c = cells_corners(&t->cells, cell);
     const vec3 up = vec3_scale(side_face(t->in->geometry, side), separation_lift(t->in->rays, edge));
     const float u = sqrtf(lattice_u(k, pcg(n))), v = lattice_v(k, pcg(n ^ 0x5bd1e995u));
@@ -190,7 +192,7 @@ static bool further_place(const transport *t, uint32_t n, uint32_t k, float edge
         out->b2 += w[i] * c.b2[i];
     }
     const vec3 at = transport_place_at(t, out);
-    if (separations_front(&t->apart, cell, at) != (part == 0))
+    if (separations_part(&t->apart, cell, at) != t->cell[n] % SEPARATION_PARTS)
         return false;
     const transport_place *known = t->places + (size_t)n * TRANSPORT_PLACES + pcg(k) % t->place_count[n];
     return separation_sees(t->in->rays, vec3_along(at, up, 1.0f), vec3_along(transport_place_at(t, known), up, 1.0f));
@@ -203,9 +205,10 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
         return;
     float *to = l->radiosity + (size_t)n * t->columns;
     const uint32_t places = first_places(l, n);
-    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    const float edge = t->edge[t->cells.side_of[transport_cell(t, n)]];
     uint32_t count = places;
-    shadows known;
+    double sum = 0.0, squares = 0.0;
+    transport_shadows known;
     memset(&known, 0xff, sizeof known);
     for (uint32_t c = 0; c < t->columns; c++)
         to[c] *= (float)places;
@@ -214,8 +217,15 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
         if (!further_place(t, n, k, edge, &p))
             continue;
         const spot at = spot_at(t, &p, edge);
-        light_place(t, &at, n, places * LEAST_SAMPLES + k, 1, 1.0f, to, &known, rays);
+        const double all = light_place(t, &at, n, places * LEAST_SAMPLES + k, 1, 1.0f, to, &known, rays);
+        sum += all;
+        squares += all * all;
         count++;
+    }
+    if (count > places) {
+        const double mean = sum / (count - places), spread = squares - mean * sum;
+        l->mean[n] = mean;
+        l->variance[n] = count == places + 1 ? mean * mean : spread > 0.0 ? spread / (count - places - 1) : 0.0;
     }
     for (uint32_t c = 0; c < t->columns; c++)
         to[c] /= (float)count;
@@ -223,7 +233,7 @@ static void light_more(void *user, uint32_t n, uint64_t *rays) {
 
 /* Of a block's two halves, each every second of its cells, the one that this cell is in. */
 static uint32_t half_of(const transport *t, uint32_t n) {
-    const uint32_t cell = t->cell[n] / 2;
+    const uint32_t cell = transport_cell(t, n);
     return 2u * (cell / BLOCK) + (cell & 1u);
 }
 
@@ -276,8 +286,10 @@ bool transport_direct(transport *t, float *radiosity) {
     lighting l = {.t = t, .radiosity = radiosity};
     l.weight = calloc(t->count + 1u, sizeof *l.weight);
     l.variance = malloc((t->count + 1u) * sizeof *l.variance);
+    l.mean = malloc((t->count + 1u) * sizeof *l.mean);
     l.more = calloc(t->count + 1u, sizeof *l.more);
-    bool fine = l.weight && l.variance && l.more;
+    t->varies = malloc((t->count + 1u) * sizeof *t->varies);
+    bool fine = l.weight && l.variance && l.mean && l.more && t->varies;
     if (fine) {
         find_weight(&l);
         parallel_work work = {
@@ -287,15 +299,18 @@ bool transport_direct(transport *t, float *radiosity) {
         work.run = light_more;
         l.again = true;
         parallel_run(&work, &t->report->light_rays);
+        for (uint32_t i = 0; i < t->count; i++)
+            t->varies[i] = l.variance[i] > VARIES * VARIES * l.mean[i] * l.mean[i];
     }
     free(l.weight);
     free(l.variance);
+    free(l.mean);
     free(l.more);
     return fine;
 }
 
 void transport_albedo(const transport *t, uint32_t n, float out[3]) {
-    const float edge = t->edge[t->cells.side_of[t->cell[n] / 2]];
+    const float edge = t->edge[t->cells.side_of[transport_cell(t, n)]];
     out[0] = out[1] = out[2] = 0.0f;
     for (uint32_t p = 0; p < t->place_count[n]; p++)
         add(out, spot_at(t, t->places + (size_t)n * TRANSPORT_PLACES + p, edge).albedo, 1.0f / (float)t->place_count[n]);

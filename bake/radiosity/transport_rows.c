@@ -9,6 +9,7 @@
 #define EDGE_RANGE 6.0f  /* cells' edges are at most so many times larger or smaller than if all were alike */
 #define SPLIT_LEAST 0.2f /* cells much smaller than others are not looked at for what stands on them */
 #define BATCH 1024u      /* rows between two times that their hits are noted */
+#define CLOSE_BY 2.0f    /* squared distance over a cell's area */
 #define LEAST_RAYS 8u    /* of a cell that light comes from */
 #define MOST_RAYS 256u
 #define GENERATIONS 3u /* of cells: those that receivers meet, that these meet, ... The last meet only what is known */
@@ -105,18 +106,19 @@ bool transport_divide(transport *t, vit_text *why) {
     if (!find_edges(t) || cells_divide(t->in->geometry, t->in->rays->s->triangle_count, edge_of, t, &t->cells, why) != VIT_OK ||
         !find_parted(t))
         return false;
-    t->number = malloc((2u * (size_t)t->cells.count + 1u) * sizeof *t->number);
+    t->number = malloc((SEPARATION_PARTS * (size_t)t->cells.count + 1u) * sizeof *t->number);
     if (!t->number)
         return false;
-    memset(t->number, 0xff, 2u * (size_t)t->cells.count * sizeof *t->number);
+    memset(t->number, 0xff, SEPARATION_PARTS * (size_t)t->cells.count * sizeof *t->number);
     return true;
 }
 
 /* 2. Rows: where rays of a receiver, or of a cell's places, end. */
 
 typedef struct found {
-    uint32_t part; /* 2 * cell + part of it; VIT_NONE: nowhere */
+    uint32_t part; /* SEPARATION_PARTS * cell + part of it; VIT_NONE: nowhere */
     float weight;
+    bool near; /* closer by than the cell is large */
     transport_place place;
 } found;
 
@@ -130,7 +132,13 @@ typedef struct shooting {
 
 static uint32_t part_of(const transport *t, const gather_hit *h) {
     const uint32_t cell = cells_at(&t->cells, h->side, h->b1, h->b2);
-    return 2 * cell + !separations_front(&t->apart, cell, side_place(t->in->geometry, h->side, h->b1, h->b2));
+    return SEPARATION_PARTS * cell + separations_part(&t->apart, cell, side_place(t->in->geometry, h->side, h->b1, h->b2));
+}
+
+static bool is_near(const transport *t, const transport_place *from, const found *h) {
+    const uint32_t cell = h->part / SEPARATION_PARTS;
+    const vec3 at = transport_place_at(t, from), way = vec3_sub(transport_place_at(t, &h->place), at);
+    return vec3_dot(way, way) < CLOSE_BY * cells_area(&t->cells, t->in->geometry, cell) && !transport_is_far(t, cell, at);
 }
 
 static int by_part(const void *a, const void *b) {
@@ -169,6 +177,7 @@ static void shoot_row(void *user, uint32_t item) {
         if (h.side == VIT_NONE || !(h.weight > 0.0f) || !(t->edge[h.side] > 0.0f))
             continue;
         hits[i] = (found){.part = part_of(t, &h), .weight = h.weight, .place = {h.side, h.b1, h.b2, pcg(seed + pcg(i))}};
+        hits[i].near = s->receivers && is_near(t, &from, hits + i);
     }
     qsort(hits, rays, sizeof *hits, by_part);
 }
@@ -254,6 +263,9 @@ static bool note_row(transport *t, transport_rows *rows, const found *hits, uint
             sum += (double)hits[i].weight;
             if (!known)
                 offer(t, number, &hits[i].place);
+            const transport_near near = {rows->count, number, hits[i].place, hits[i].weight / (float)rays};
+            if (hits[i].near && !transport_note_near(t, &near))
+                return false;
         }
         all += sum;
         if (number == VIT_NONE)

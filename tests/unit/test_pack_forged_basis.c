@@ -60,7 +60,8 @@
     X(RCEL, a_part_before_it, "record 1: its cells must be among those from record 2 on and before 2", divide(im, 3, 2, 2),    \
       divide(im, 1, 9, 2))                                                                                                     \
     X(RCEL, parts_of_two_levels, "record 3: its cells must be among", divide(im, 3, 5, 3), divide(im, 6, 9, 2))                \
-    X(RCEL, divided_thrice, "record 9: divided more than", divide(im, 3, 4, 2), divide(im, 5, 9, 2), divide(im, 9, 13, 2))     \
+    X(RCEL, divided_four_times, "record 13: divided more than", divide(im, 3, 4, 2), divide(im, 5, 9, 2),                      \
+      divide(im, 9, 13, 2), divide(im, 13, 17, 2))                                                                             \
     X(RCEL, padding_of_a_divided_cell, "record 3: padding", divide(im, 3, 4, 2), im->receiver_cells[3].receiver[2] = 1)        \
     X(RSPL, receiver_beyond_the_last, "record 1: receiver 512 of 512", im->splits[1].receiver[1] = 512)                        \
     X(RSPL, normal_too_short, "record 0: its normal", im->splits[0].normal[1] = 0.5f)                                          \

@@ -125,8 +125,9 @@ static void receivers_of_a_plane_interpolate_what_is_linear(void **state) {
 }
 
 /* Light that changes much near a place of the floor, and hardly elsewhere. */
-static vit_status shine(const lab *l, const receivers *r, vec3 spot, float *irradiance) {
+static vit_status shine(const lab *l, const receivers *r, vec3 spot, float *irradiance, float *noise) {
     for (uint32_t i = 0; i < r->count; i++) {
+        noise[i] = 0.0f;
         const receiver *at = r->receivers + i;
         const vec3 way = vec3_sub(side_place(&l->r->g, at->side, at->b1, at->b2), spot);
         irradiance[i] = 1.0f / (vec3_dot(way, way) + 0.02f);
@@ -134,14 +135,14 @@ static vit_status shine(const lab *l, const receivers *r, vec3 spot, float *irra
     return VIT_OK;
 }
 
-static vit_status look_at_a_spot(void *user, const receivers *r, float *irradiance, vit_text *why) {
+static vit_status look_at_a_spot(void *user, const receivers *r, float *irradiance, float *noise, vit_text *why) {
     (void)why;
-    return shine(user, r, (vec3){0.3f, -1.0f, 0.2f}, irradiance);
+    return shine(user, r, (vec3){0.3f, -1.0f, 0.2f}, irradiance, noise);
 }
 
-static vit_status look_at_the_plate(void *user, const receivers *r, float *irradiance, vit_text *why) {
+static vit_status look_at_the_plate(void *user, const receivers *r, float *irradiance, float *noise, vit_text *why) {
     (void)why;
-    return shine(user, r, (vec3){0.0f, -0.5f, 0.0f}, irradiance);
+    return shine(user, r, (vec3){0.0f, -0.5f, 0.0f}, irradiance, noise);
 }
 
 /* What a receiver has, of its own or from those that it follows. */
@@ -217,11 +218,11 @@ static void divided_cells_fit_together(void **state) {
     close_lab(&l);
 }
 
-static vit_status look_evenly(void *user, const receivers *r, float *irradiance, vit_text *why) {
+static vit_status look_evenly(void *user, const receivers *r, float *irradiance, float *noise, vit_text *why) {
     (void)user;
     (void)why;
     for (uint32_t i = 0; i < r->count; i++)
-        irradiance[i] = 1.0f;
+        irradiance[i] = 1.0f, noise[i] = 0.0f;
     return VIT_OK;
 }
 
@@ -322,8 +323,8 @@ static uint32_t look_beside_the_wall(const lab *l, const receivers *found) {
         for (uint32_t i = 0; i < 4096 && side_face(&l->r->g, s).y > 0.99f; i++) {
             const float b1 = unit_float(pcg(i)) * 0.5f, b2 = unit_float(pcg(i ^ 0x80000000u)) * (1.0f - b1);
             const vec3 at = side_place(&l->r->g, s, b1, b2);
-            if (at.y > -0.99f || fabsf(fabsf(at.x - 0.36f) - 0.2f) > 0.1f || fabsf(at.z) > 0.6f)
-                continue; /* not beside it; nearer than 4 cm cells may have a corner there alone */
+            if (at.y > -0.99f || fabsf(fabsf(at.x - 0.36f) - 0.19f) > 0.108f || fabsf(at.z) > 0.6f)
+                continue; /* not beside it; nearer than 2 cm cells may have nothing but a corner there */
             const vit_u32 *of = receivers_at(found, s, b1, b2, at);
             near_wall++;
             for (int k = 0; k < 3; k++) {
@@ -342,6 +343,7 @@ static void no_place_beside_a_wall_takes_light_of_its_inside(void **state) {
     (void)state;
     static const float spacings[] = {6.0f, 9.0f, 12.0f, 14.0f};
     lab l;
+    uint32_t parted = 0;
     open_lab(&l, room_with_wall());
     for (size_t i = 0; i < sizeof spacings / sizeof *spacings; i++) {
         const receivers_input in = seen_from_the_middle(&l, spacings[i]);
@@ -351,9 +353,93 @@ static void no_place_beside_a_wall_takes_light_of_its_inside(void **state) {
         const uint32_t near_wall = look_beside_the_wall(&l, &found);
         print_message("spacing %g: %u places beside the wall, %u parted cells\n", (double)spacings[i], near_wall,
                       found.split_count);
-        assert_true(near_wall > 100 && found.split_count > 4);
+        assert_true(near_wall > 100);
+        parted += found.split_count; /* none where cells end within the wall: what is inside of it has no light of its own */
         receivers_free(&found);
     }
+    assert_true(parted > 16);
+    close_lab(&l);
+}
+
+/* Numbers whose mean is 0 and deviation 1, alike between -1.7 and 1.7. */
+static float by_chance(uint32_t i) {
+    return 3.4641016f * (unit_float(pcg(i)) - 0.5f);
+}
+
+/* Light that is linear, with noise, and a step of ten times the noise across the floor. */
+static void noise_is_smoothed_and_steps_stay(void **state) {
+    (void)state;
+    lab l;
+    open_lab(&l, room_closed(0.5f));
+    const receivers_input in = seen_from_the_middle(&l, 2.5f);
+    receivers found;
+    vit_text why = {""};
+    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    const float deviation = 0.1f, high = 1.0f;
+    float *light = calloc(found.count, sizeof *light), *noise = calloc(found.count, sizeof *noise);
+    assert_true(light && noise);
+    double before = 0, after = 0, mean = 0, stated = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t i = 0; i < found.count; i++) {
+            const vec3 p = side_place(&l.r->g, found.receivers[i].side, found.receivers[i].b1, found.receivers[i].b2);
+            const float right = (float)linear(p) + (p.x > 0.1f ? high : 0.0f);
+            if (pass == 0) {
+                light[i] = right + deviation * by_chance(i);
+                noise[i] = deviation;
+            }
+            const double off = (double)(light[i] - right) / (double)deviation;
+            *(pass ? &after : &before) += off * off / found.count;
+            mean += pass ? off / found.count : 0;
+            stated += pass ? (double)noise[i] / (double)deviation / found.count : 0;
+        }
+        if (pass == 0)
+            assert_true(receivers_smooth(&found, light, noise, 1));
+    }
+    print_message("deviation %.3f before, %.3f after, %.3f stated; mean %.4f\n", sqrt(before), sqrt(after), stated, mean);
+    assert_true(fabs(sqrt(before) - 1) < 0.05);
+    assert_true(sqrt(after) < 0.5); /* a step that is smoothed away is off by 5 */
+    assert_true(fabs(mean) < 0.05);
+    free(light);
+    free(noise);
+    receivers_free(&found);
+    close_lab(&l);
+}
+
+/* Beside a spot of light at the edge of a cell the neighbour's corners tell nothing of it: it is divided, too. */
+static void what_lies_on_an_edge_is_seen_from_both_cells(void **state) {
+    (void)state;
+    lab l;
+    open_lab(&l, room_closed(0.5f));
+    receivers_input in = seen_from_the_middle(&l, 12.0f);
+    in.look = look_at_a_spot;
+    receivers found;
+    vit_text why = {""};
+    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    float *light = calloc(found.count, sizeof *light), *noise = calloc(found.count, sizeof *noise);
+    assert_true(light && noise);
+    look_at_a_spot(&l, &found, light, noise, &why);
+    receivers_follow(&found, light, 1);
+    double worst = 0;
+    for (uint32_t s = 0; s < 2 * l.r->m.triangles; s += 2)
+        for (uint32_t i = 0; i < 20000 && side_face(&l.r->g, s).y > 0.99f; i++) {
+            float b1 = unit_float(pcg(i)), b2 = unit_float(pcg(i ^ 0x80000000u));
+            if (b1 + b2 > 1) {
+                b1 = 1 - b1;
+                b2 = 1 - b2;
+            }
+            const vec3 p = side_place(&l.r->g, s, b1, b2), way = vec3_sub(p, (vec3){0.3f, -1.0f, 0.2f});
+            const looked_up at = look_up(&found, s, b1, b2);
+            double sum = 0;
+            for (int k = 0; k < 3; k++)
+                sum += at.w[k] * (double)light[at.cell->receiver[k]];
+            const double right = 1 / ((double)vec3_dot(way, way) + 0.02);
+            worst = p.y < -0.99f ? fmax(worst, fabs(sum / right - 1)) : worst;
+        }
+    print_message("off by %.3f of the light at worst\n", worst);
+    assert_true(worst < 0.12); /* 0.09; where the neighbour is not divided 0.145 */
+    free(light);
+    free(noise);
+    receivers_free(&found);
     close_lab(&l);
 }
 
@@ -363,6 +449,8 @@ int main(void) {
         cmocka_unit_test(divided_cells_fit_together),
         cmocka_unit_test(no_place_beside_a_wall_takes_light_of_its_inside),
         cmocka_unit_test(what_lies_near_records_follows_them_where_light_is_even),
+        cmocka_unit_test(noise_is_smoothed_and_steps_stay),
+        cmocka_unit_test(what_lies_on_an_edge_is_seen_from_both_cells),
     };
     return cmocka_run_group_tests_name("receivers", tests, NULL, NULL);
 }

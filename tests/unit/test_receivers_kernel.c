@@ -190,7 +190,8 @@ static void a_linear_function_comes_back_in_every_cell_on_both_sides(void **stat
 
 static void a_divided_cell_has_the_light_of_its_parts(void **state) {
     (void)state;
-    static const int parts[][VIT_RECEIVER_LEVELS + 1] = {{1}, {2}, {5}, {VIT_RECEIVER_PARTS}, {1, 1}, {3, 4}, {2, 7}};
+    static const int parts[][VIT_RECEIVER_LEVELS + 1] = {{1},    {2},    {5},    {VIT_RECEIVER_PARTS},
+                                                         {1, 1}, {3, 4}, {2, 7}, {2, 2, 3}};
     for (int n = 1; n <= DIVIDED; n++)
         for (size_t p = 0; p < sizeof parts / sizeof *parts; p++) {
             cell_lab *l = make_cells(n, corner0, corner1, corner2, NULL, 0);

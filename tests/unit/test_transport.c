@@ -54,7 +54,7 @@ static void arriving(const lab *l, const transport_state *states, uint32_t state
                                 .bounce_rays = e.bounce_rays};
     transport_report report;
     vit_text why = {""};
-    if (transport_find(&in, irradiance, &report, &why) != VIT_OK)
+    if (transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why) != VIT_OK)
         fail_msg("%s", why.text);
     for (uint32_t k = 0; k < 3 * state_count; k++) {
         out[k] = 0.0;
@@ -213,6 +213,116 @@ static void light_from_very_near_is_kept(void **state) {
     close_lab(&l);
 }
 
+/* What a place of the wall x = -1 gets of a light by way of the floor alone, over the floor's albedo, in the first channel: the
+ * floor's radiosity times the form factor, summed over strips that grow away from the wall. */
+static double by_way_of_the_floor(const vit_light *light, double y, double z) {
+    enum { ACROSS = 400, ALONG = 800 };
+    const double high = (double)light->position[1] + 1, up = y + 1;
+    double sum = 0;
+    for (int i = 0; i < ACROSS; i++) {
+        const double from = 2.0 * i * i / (ACROSS * ACROSS), to = 2.0 * (i + 1) * (i + 1) / (ACROSS * ACROSS),
+                     away = (from + to) / 2, x = away - 1 - (double)light->position[0];
+        for (int k = 0; k < ALONG; k++) {
+            const double at = -1 + 2 * (k + 0.5) / ALONG, lz = at - (double)light->position[2],
+                         l2 = x * x + high * high + lz * lz, d2 = away * away + up * up + (at - z) * (at - z);
+            sum += high / (l2 * sqrt(l2)) * away * up / (PI * d2 * d2) * (to - from) * 2 / ALONG;
+        }
+    }
+    return sum;
+}
+
+/* Places of the wall x = -1 round a lamp near its foot. */
+static uint32_t beside_the_lamp(const lab *l, float z, receiver *at, uint32_t most) {
+    uint32_t count = 0;
+    for (uint32_t s = 0; s < 2 * l->r->m.triangles; s++)
+        for (uint32_t i = 0; i < 20000 && side_face(&l->r->g, s).x > 0.99f && count < most; i++) {
+            const receiver r = {.side = s, .b1 = unit_float(pcg(i)), .b2 = unit_float(pcg(i + 20000))};
+            const vec3 p = side_place(&l->r->g, s, r.b1, r.b2);
+            if (r.b1 + r.b2 < 1 && p.x < -0.99f && p.y < -0.86f && p.y > -0.97f && fabsf(p.z - z) < 0.15f)
+                at[count++] = r;
+        }
+    return count;
+}
+
+/* A lamp close over the floor, beside a wall: much of what the wall gets comes from a spot no further away than cells are
+ * large. */
+static void light_of_a_spot_close_by_comes_from_where_it_is(void **state) {
+    (void)state;
+    enum { PLACES = 12 };
+    lab l;
+    open_painted(&l, room_closed(0.5f));
+    const photons_light lamp = room_point_light(-0.93f, -0.96f, 0.13f, 1);
+    const transport_state only = {&lamp, 1};
+    receiver at[PLACES];
+    float irradiance[3 * PLACES];
+    const transport_input in = {.rays = &l.rays,
+                                .geometry = &l.r->g,
+                                .receivers = at,
+                                .receiver_count = beside_the_lamp(&l, 0.13f, at, PLACES),
+                                .states = &only,
+                                .state_count = 1,
+                                .reflections = 1,
+                                .cells = 256,
+                                .receiver_rays = 4096,
+                                .bounce_rays = 1};
+    transport_report report;
+    vit_text why = {""};
+    assert_int_equal(in.receiver_count, PLACES);
+    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    for (int i = 0; i < PLACES; i++) {
+        const vec3 p = side_place(&l.r->g, at[i].side, at[i].b1, at[i].b2);
+        const double right = by_way_of_the_floor(&lamp.light, (double)p.y, (double)p.z) * (double)albedos[0],
+                     got = (double)irradiance[3 * i];
+        print_message("%g above the floor: %.4f for %.4f\n", (double)p.y + 1, got, right);
+        assert_true(got > right && got < 1.1 * right); /* other walls add a little */
+    }
+    close_lab(&l);
+}
+
+enum { ROOMS = 4 };
+
+/* Four rooms, parted by two walls that cross in the middle; a lamp in one. Cells of floor and ceiling go on beneath the walls,
+ * and those in the middle have parts in all four. */
+static void light_does_not_get_past_walls_that_cross(void **state) {
+    (void)state;
+    lab l;
+    room *r = room_closed(0.5f);
+    room_quad(r, (const float[]){0.07f, -1, -1}, (const float[]){0, 0, 2}, (const float[]){0, 2, 0}, WALLS);
+    room_quad(r, (const float[]){-1, -1, 0.05f}, (const float[]){2, 0, 0}, (const float[]){0, 2, 0}, WALLS);
+    open_painted(&l, r);
+    const photons_light lamp = room_point_light(0.4f, 0.1f, 0.3f, 1);
+    const transport_state only = {&lamp, 1};
+    uint32_t count;
+    receiver *at = spread_receivers(&l, 8, &count);
+    float *irradiance = calloc(3 * (size_t)count, sizeof *irradiance);
+    assert_non_null(irradiance);
+    const transport_input in = {.rays = &l.rays,
+                                .geometry = &l.r->g,
+                                .receivers = at,
+                                .receiver_count = count,
+                                .states = &only,
+                                .state_count = 1,
+                                .reflections = TRANSPORT_CONVERGED,
+                                .cells = 256,
+                                .receiver_rays = 512,
+                                .bounce_rays = 65536};
+    transport_report report;
+    vit_text why = {""};
+    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    double got[ROOMS] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        const vec3 p = vec3_along(side_place(&l.r->g, at[i].side, at[i].b1, at[i].b2), side_face(&l.r->g, at[i].side), 1e-3f);
+        got[2 * (p.x < 0.07f) + (p.z < 0.05f)] += (double)irradiance[3 * i];
+    }
+    print_message("light of the dark rooms over that of the lit one: %g %g %g\n", got[1] / got[0], got[2] / got[0],
+                  got[3] / got[0]);
+    for (int i = 1; i < ROOMS; i++)
+        assert_true(got[i] < 1e-3 * got[0]);
+    free(irradiance);
+    free(at);
+    close_lab(&l);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_closed_room_keeps_its_light),
@@ -221,6 +331,8 @@ int main(void) {
         cmocka_unit_test(small_spots_that_are_mostly_missed_are_kept),
         cmocka_unit_test(rays_that_meet_unknown_cells_lose_no_light),
         cmocka_unit_test(light_from_very_near_is_kept),
+        cmocka_unit_test(light_of_a_spot_close_by_comes_from_where_it_is),
+        cmocka_unit_test(light_does_not_get_past_walls_that_cross),
     };
     return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
 }
