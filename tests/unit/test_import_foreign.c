@@ -197,6 +197,22 @@ static void cameras_of_fbx_keep_their_fields_of_view(void **state) {
     model_free(&m);
 }
 
+/* The file has such normals somewhere (a comment is enough of them, for releases of Assimp that would read them), and the mesh
+ * has none. */
+static void normals_of_fbx_that_are_not_read_are_told_of(void **state) {
+    model m;
+    (void)state;
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, "\t; ByVertice\n", "");
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_non_null(strstr(warnings, "and perhaps others: normals by vertex are left out, and others made"));
+    model_free(&m);
+    refuse(FILE_OF("t.fbx"), true, "normals by vertex are left out");
+    put_fbx("0,0,0,1,0,0,0,1,0", y_up, 1, "", "");
+    import_good(FILE_OF("t.fbx"), &m);
+    assert_null(strstr(warnings, "normals"));
+    model_free(&m);
+}
+
 static void case_embedded_texture(void **state) {
     model m;
     (void)state;
@@ -232,6 +248,7 @@ int main(void) {
         T(spots_of_collada_have_one_angle),
         T(cameras_of_collada_keep_their_fields_of_view),
         T(cameras_of_fbx_keep_their_fields_of_view),
+        T(normals_of_fbx_that_are_not_read_are_told_of),
         T(case_embedded_texture),
         T(cases_collada),
     };

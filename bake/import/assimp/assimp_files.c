@@ -87,6 +87,23 @@ static void mend_text(assimp_scene *a, plain_file *f, const char *path, size_t b
     *f = (plain_file){mended, text};
 }
 
+/* Somewhere in the file from where it stands; it is rewound. */
+static bool has_word(FILE *file, const char *word) {
+    char piece[1 << 14];
+    const size_t length = strlen(word);
+    size_t kept = 0, got;
+    bool found = false;
+    while (!found && (got = fread(piece + kept, 1, sizeof piece - kept, file)) > 0) {
+        const size_t size = kept + got;
+        for (size_t i = 0; !found && i + length <= size; i++)
+            found = memcmp(piece + i, word, length) == 0;
+        kept = size < length ? size : length - 1;
+        memmove(piece, piece + size - kept, kept);
+    }
+    rewind(file);
+    return found;
+}
+
 static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode) {
     assimp_scene *a = (assimp_scene *)(void *)io->UserData;
     size_t bytes;
@@ -101,6 +118,8 @@ static struct aiFile *open_file(struct aiFileIO *io, const char *path, const cha
     }
     plain->file = file;
     import_note_file(a->im, path, bytes);
+    if (import_has_suffix(path, ".fbx"))
+        a->vertex_normals = has_word(file, "ByVertice");
     if (is_mended(path))
         mend_text(a, plain, path, bytes);
     *f = (struct aiFile){.ReadProc = read_some,

@@ -58,6 +58,12 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]) {
                            a->ai->mNumMaterials);
     if (!say_rigid(a, mesh))
         return false;
+    if (a->vertex_normals && !mesh->mNormals) {
+        a->vertex_normals = false;
+        if (!import_not_done(a->im, "mesh '%.100s' and perhaps others: normals by vertex are left out, and others made",
+                             mesh->mName.data))
+            return false;
+    }
     mesh_part part = {.name = mesh->mName.data,
                       .vertices = mesh->mNumVertices,
                       .position = {floats_of(mesh->mVertices), 3},

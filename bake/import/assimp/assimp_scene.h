@@ -28,6 +28,7 @@ typedef struct assimp_scene {
     double unit;             /* metres that the head of an X3D file says, or 0 */
     bool bad_unit, bad_axis; /* what the file says of them is none */
     char amf_unit[64];       /* as the root element of an AMF file has it, or "" */
+    bool vertex_normals;     /* an FBX file has normals by vertex, which not all releases read */
     unsigned lost_nodes;     /* that were NULL in Assimp's tree */
 } assimp_scene;
 
