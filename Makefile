@@ -13,17 +13,17 @@ WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Werr
 # makes other bits in bake/geometry/glass_inset.c (kernels as C: HOST_FLAGS).
 BASE := -std=c11 -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -DCL_TARGET_OPENCL_VERSION=120 -DVIT_OPENCL=$(OPENCL) -pthread -ffp-contract=off -fno-tree-slp-vectorize -MMD -MP -Iinclude
 ifeq ($(config),release)
-OPT := -O2 -g
+OPT := -O2 -g1
 else ifeq ($(config),debug)
 OPT := -O0 -g
 else ifeq ($(config),sanitize)
-OPT := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+OPT := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else ifeq ($(config),fuzz)
 CC := clang
 CXX := clang++
-OPT := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+OPT := -O1 -g1 -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 else ifeq ($(config),coverage)
-OPT := -O1 -g --coverage
+OPT := -O1 -g1 --coverage
 else
 $(error config must be release, debug, sanitize, fuzz or coverage, got '$(config)')
 endif
@@ -81,7 +81,7 @@ HOST_OPT := -O3 $(if $(HOST_GCC),--param inline-unit-growth=400 --param large-fu
 # Kernels are written for OpenCL C: their types and warnings are other ones. No option here changes a bit of a result: errno and traps
 # are not looked at, and records are read as other types.
 HOST_CFLAGS := $(BASE) -Wall -Wextra -Werror -Wno-unknown-pragmas -Wno-sign-compare -Wno-unused-parameter -Wno-psabi -fno-math-errno \
-               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-g,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
+               -fno-trapping-math -fno-strict-aliasing $(if $(filter release,$(config)),-g1,$(OPT)) $(if $(filter sanitize,$(config)),-fsanitize=float-cast-overflow -fno-sanitize-recover=float-cast-overflow) -I. -I$(B) $(CFLAGS)
 HOST_OBJECTS := $(HOST_PROGRAMS:%=$(B)/host_%.o)
 
 .DELETE_ON_ERROR:
