@@ -2,26 +2,31 @@
 # nothing. Each is the very target, with less to do.
 SMOKE_BENCHES := $(patsubst tests/bench/bench_%.c,smoke-bench/%,$(wildcard tests/bench/bench_*.c))
 # With and without OpenCL; a file of each folder; a reader, the frame and the player of a pack; and each fuzzer for a few seconds.
+SMOKE_NUMERIC := grazing depth_slices
 SMOKE_NO_OPENCL := config=debug HOST_ISAS=baseline HOST_LANES=8
 SMOKE_LINTED := runtime/frame.c runtime/play/pacing.c bake/pack/pack_write.c bake/cost/pareto.c
 SMOKE_COVERED := unit/test_pack golden/test_no_allocation
 SMOKE_SECONDS := 5
-SMOKES := $(addprefix smoke-,bench numeric soak no-opencl lint coverage fuzz matrix)
-.PHONY: smoke build-benches $(SMOKES) $(SMOKE_BENCHES)
+SMOKES := $(addprefix smoke-,fuzz coverage bench matrix lint numeric no-opencl soak)
+.PHONY: smoke build-benches build-smoke $(SMOKES) $(SMOKE_BENCHES)
+# What they need is there first, so that none of them installs or builds what another does; then they run side by side.
 smoke:
-	@set -e; for s in $(SMOKES); do echo "== $$s"; $(MAKE) --no-print-directory $$s; done
+	@for d in deps fuzz-deps lint-deps coverage-deps; do $(MAKE) --no-print-directory $$d || exit 1; done
+	@$(MAKE) $(SIDE_BY_SIDE) build-smoke
+	@$(MAKE) $(SIDE_BY_SIDE) $(SMOKES)
 	@echo "smoke: $(SMOKES:smoke-%=%) ran to their ends"
 
 smoke-bench: deps
 	@$(MAKE) $(SIDE_BY_SIDE) build-benches
 	@VITRINE_BENCH=smoke $(MAKE) $(SIDE_BY_SIDE) $(SMOKE_BENCHES)
+build-smoke: build-benches $(SMOKE_NUMERIC:%=$(B)/tests/numeric/test_%) $(B)/tests/golden/test_soak
 build-benches: $(SMOKE_BENCHES:smoke-bench/%=$(B)/tests/bench/bench_%) $(B)/vitrine-play $(B)/vitrine-bake $(SCENES_MADE)
 $(SMOKE_BENCHES): smoke-bench/%: $(B)/tests/bench/bench_%
 	@tests/run.sh $@ $<
 smoke-matrix:
 	@VITRINE_MATRIX=smoke $(MAKE) --no-print-directory matrix
 smoke-numeric:
-	@$(MAKE) --no-print-directory numeric NUMERIC="grazing depth_slices"
+	@$(MAKE) --no-print-directory numeric NUMERIC="$(SMOKE_NUMERIC)"
 smoke-soak:
 	@$(MAKE) --no-print-directory soak SOAK_FRAMES=64
 # It must ask for no package of OpenCL's, and play what the other has baked.

@@ -51,23 +51,26 @@ $(SCENES_MADE): $(B)/make-scenes $(wildcard bake/scenes/*.cfg)
 # Tests run side by side, each with its output in one piece; those that take longest first, so that none is left to run alone. What test_same_bits
 # has PoCL compile is there for those that come late.
 JOBS ?= $(shell nproc)
-SIDE_BY_SIDE := --no-print-directory -j$(JOBS) --output-sync=target
+# Called by a make that already has jobs to give, it takes of those.
+SIDE_BY_SIDE = --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS)) --output-sync=target
 LONGEST := $(patsubst %,$(B)/tests/golden/test_%,same_bits pipeline furnace) $(B)/tests/unit/test_zones $(patsubst %,$(B)/tests/golden/test_%,baked_light odd_files dark_scenes cost bake_twice convergence indirect_auto auto effects bounds)
 RUNS := $(addprefix run/,$(filter $(TEST_PROGRAMS),$(LONGEST)) $(filter-out $(LONGEST),$(TEST_PROGRAMS)))
-.PHONY: matrix numeric run-tests run-bench build-sanitized
+.PHONY: matrix numeric run-tests run-bench build-tests build-sanitized build-sanitized-too
 # What became of each test is written down here; a run of `make test` that is stopped, or cannot build, comes to no total.
 RESULTS := build/results
 test: deps
 	@[ "$(OPENCL)" != 0 ] || { echo "make test: many tests are about OpenCL and its compiler; OPENCL=0 is for tools and demo" >&2; exit 2; }
 	@rm -rf $(RESULTS); mkdir -p $(RESULTS)
-	@$(MAKE) $(SIDE_BY_SIDE) config=sanitize build-sanitized
-	@$(MAKE) $(SIDE_BY_SIDE) $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
+	@$(MAKE) $(SIDE_BY_SIDE) build-tests build-sanitized-too
 	@VITRINE_RESULTS=$(RESULTS) $(MAKE) $(SIDE_BY_SIDE) run-tests
 	@tests/total.sh $(RESULTS) $(RUNS:run/%=%) $(SANITIZED_PLAYS)
 # Bad input under the address and undefined behaviour sanitizers.
 SANITIZED := $(addprefix tests/,$(addprefix unit/test_,pack pack_forged pack_forged_basis pack_save scene scene_mistakes transfer) fuzz/test_fuzz_corpus)
 RUNS += $(filter-out $(RUNS),$(SANITIZED:%=run/build/sanitize/%))
 build-sanitized: $(SANITIZED:%=$(B)/%) $(B)/vitrine-play
+build-sanitized-too:
+	@$(MAKE) --no-print-directory config=sanitize build-sanitized
+build-tests: $(TEST_PROGRAMS) $(B)/vitrine-play $(B)/vitrine-bake $(B)/vitrine-cost $(SCENES_MADE)
 # The kernels as C, too: packs that hold each effect between them, baked by the release's baker.
 SANITIZED_list := cornell --zones 0 --sample-bits 16
 SANITIZED_zones := cornell --zones 2 --indirect-samples 4 --kernel flattened
