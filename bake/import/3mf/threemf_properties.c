@@ -1,6 +1,7 @@
 /* Groups of properties: base materials (Core 5), colours, texture coordinates, mixtures, layers, metals (Materials 2 to 8). */
 #include "common/strict_math.h"
 #include "import/3mf/threemf_file.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -213,7 +214,7 @@ static bool add_composite(threemf_xml *x, const threemf_element *e) {
         }
     uint8_t rgba[4];
     for (int k = 0; k < 4; k++)
-        rgba[k] = k < 3 ? encode(mean[k] / sum) : (uint8_t)(255.0 * mean[k] / sum + 0.5);
+        rgba[k] = k < 3 ? encode(mean[k] / sum) : (uint8_t)lround(255.0 * mean[k] / sum);
     return add_color(f, rgba, THREEMF_NONE);
 }
 
