@@ -159,6 +159,21 @@ static void explain_indirect(const bake *b) {
         explain_radiosity(&b->packed);
 }
 
+static void explain_lightmap(const bake *b) {
+    const lightmap *m = &b->packed.lightmap;
+    const vit_scene *s = &b->packed.plan.scene;
+    if (b->packed.plan.lightmap_why[0])
+        printf("  lightmap = \"auto\": rays, since %s\n", b->packed.plan.lightmap_why);
+    if (s->effects & VIT_BIT(LIGHTMAP))
+        printf(
+            "  light of the sky and of area lights by a lightmap: %u receivers, %u cells, %.0f kB; rays find it in %u cells, "
+            "%.2g %% of what is seen\n",
+            s->map_receivers, s->map_cells,
+            1e-3 * (double)(s->map_receivers * sizeof(vit_receiver) + s->map_cells * sizeof(vit_receiver_cell) +
+                            s->map_splits * sizeof(vit_receiver_split) + s->triangles * 2 * sizeof(vit_u32)),
+            m->receivers.unknown, 100 * (double)m->receivers.unknown_share);
+}
+
 static vit_status explain(bake *b, vit_text *why) {
     const pipeline *p = &b->pipeline;
     const vit_scene *s = &b->packed.plan.scene;
@@ -185,6 +200,7 @@ static vit_status explain(bake *b, vit_text *why) {
     printf("  textures %u in an atlas of %u x %u texels, %.0f %% in use\n", s->textures, p->atlas.width, p->atlas.height,
            100 * p->atlas.occupancy);
     explain_indirect(b);
+    explain_lightmap(b);
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  indirect light by photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked,
                s->bounces, (double)s->radius);

@@ -36,7 +36,8 @@
 /* X(code, record type, records: an expression over `s`, the vit_scene). The one list of sections.
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how
  * much of the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on
- * area lights, then sets of directions to the sky. SKYT: the sky's picture. XFER: a vit_transfer. */
+ * area lights, then sets of directions to the sky. SKYT: the sky's picture. MSID: as SIDE, for the
+ * lightmap, whose cells are MCEL. XFER: a vit_transfer. */
 #define VIT_SECTIONS(X)                                                                                                        \
     X(META, vit_scene, 1u)                                                                                                     \
     X(CAMS, vit_camera, s->frames)                                                                                             \
@@ -65,6 +66,10 @@
     X(GATH, vit_u32, s->gather_words)                                                                                          \
     X(LOOK, vit_u32, (uint64_t)VIT_LOOKED_SETS(s) * (s->receivers / 32))                                                       \
     X(CACH, vit_cache_cell, s->cache_cells)                                                                                    \
+    X(MSID, vit_u32, s->map_cells ? 2 * (uint64_t)s->triangles : 0)                                                            \
+    X(MCEL, vit_receiver_cell, s->map_cells)                                                                                   \
+    X(MSPL, vit_receiver_split, s->map_splits)                                                                                 \
+    X(MREC, vit_receiver, s->map_receivers)                                                                                    \
     X(XFER, vit_u32, s->transfer_words)                                                                                        \
     X(PHOT, vit_photon, s->baked)                                                                                              \
     X(GOLD, vit_gold, s->frames)

@@ -218,15 +218,18 @@ static inline void lit_by_near(RAY_SCENE_PARAMETERS, uint points, li set, li own
 }
 #endif
 
-/* Adds the light of one of the fixed sets of points, which are directions with `sky`: each pixel of 4 x 4 takes another one of
- * VIT_PATTERNS, and each copy another again. own: the samples' triangles. */
+/* Each pixel of 4 x 4 takes another one of the VIT_PATTERNS fixed sets of points, and each copy another again. */
+static inline li lit_set(uint first, uint copy) {
+    return ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1);
+}
+
+/* Adds the light of the samples' sets of points, which are directions with `sky`. own: the samples' triangles. */
 static inline void lit_by_area_lights(RAY_SCENE_PARAMETERS, global const vit_light_sample *area_lights, uint points, int sky,
-                                      uint first, li own, uint copy, lit_sample *s WORK_PASSED) {
+                                      li set, li own, lit_sample *s WORK_PASSED) {
     global const float *p = (global const float *)area_lights;
     const int stride = (int)(sizeof(vit_light_sample) / sizeof(float));
     float least = scene->ray_offset * 0.0625f, least2 = least * least; /* as in direct_light */
-    li set = ((int)(first & 15u) + L_INDEX + (int)(copy * 7u)) & (VIT_PATTERNS - 1), at = set * (int)points * stride,
-       near = L_I(0);
+    li at = set * (int)points * stride, near = L_I(0);
 #if VIT_WITH(AREA_LIGHTS)
     if (!sky) {
         float far2;
@@ -263,19 +266,55 @@ static inline void lit_by_area_lights(RAY_SCENE_PARAMETERS, global const vit_lig
     }
 }
 
-#if VIT_WITH(AREA_LIGHTS)
+/* Lanes whose lobe reflects something. */
+static inline li lit_shines(global const uint *specular, uint first) {
+    return VIT_EFFECT_SPECULAR ? L_NE(L_AS_INT(L_LOAD(specular + first)), L_I(0)) : L_I(0);
+}
+
+#if VIT_WITH(AREA_RAYS)
 kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
                        LIT_PARAMETERS WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES;
     if (first >= scene->samples)
         return;
     li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+    if (VIT_EFFECT_LIGHTMAP)
+        hit &= lit_shines(specular, first);
     if (!l_any(hit))
         return;
     WORK_BEGIN
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
-    lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, first, L_AS_INT(L_LOAD(hit_triangle + first)),
-                       round / layers, &s WORK_PASS);
+    lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, lit_set(first, round / layers),
+                       L_AS_INT(L_LOAD(hit_triangle + first)), &s WORK_PASS);
+    if (VIT_EFFECT_LIGHTMAP)
+        s.matt = lv3_set(L_F(0), L_F(0), L_F(0));
+    lit_store(scene, &s, first, albedo, specular, direct);
+    WORK_END
+}
+#endif
+
+#if VIT_WITH(LIGHTMAP_RAYS)
+/* Matt light of all sets at samples where the lightmap does not know it: smooth without a filter. */
+kernel void lightmap_rays(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights, LIT_PARAMETERS,
+                          global const uint *by_rays WORK_PARAMETERS) {
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->samples || round_skips(first, active))
+        return;
+    li triangle = L_AS_INT(L_LOAD(hit_triangle + first));
+    li hit = L_NE(triangle, L_I((int)VIT_NONE)) & L_NE(L_AS_INT(L_LOAD(by_rays + first)), L_I(0));
+    if (!l_any(hit))
+        return;
+    WORK_BEGIN
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
+    for (int set = 0; set < VIT_PATTERNS; set++) {
+        if (VIT_EFFECT_AREA_LIGHTS)
+            lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, L_I(set), triangle, &s WORK_PASS);
+        if (VIT_EFFECT_SKY_LIGHT)
+            lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, L_I(set),
+                               triangle, &s WORK_PASS);
+    }
+    s.matt = lv3_scale(s.matt, L_F(1.0f / VIT_PATTERNS));
+    s.glossy = lv3_set(L_F(0), L_F(0), L_F(0));
     lit_store(scene, &s, first, albedo, specular, direct);
     WORK_END
 }

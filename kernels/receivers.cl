@@ -9,6 +9,12 @@
     global const uint *receiver_cells, global const vit_receiver_split *receiver_splits, global const float *receivers,        \
         global const float *relit
 
+/* Likewise of the lightmap, whose light is that of its receivers. */
+#define LIGHTMAP_PARAMETERS                                                                                                    \
+    global const uint *map_sides, global const uint *map_cells, global const vit_receiver_split *map_splits,                   \
+        global const float *map_receivers
+#define LIGHTMAP map_sides, map_cells, map_splits, map_receivers
+
 #if VIT_WITH(RELIGHT)
 #define RELIGHT_HALF (VIT_BASIS_GROUP / 2) /* words of a vector: receivers i and i + RELIGHT_HALF of the group share word i */
 
@@ -65,22 +71,23 @@ kernel void relight(global const vit_scene *scene, uint frame, global const vit_
 static inline global const uint *receivers_of(global const uint *cells, global const vit_receiver_split *splits, int index,
                                               float x, float y, float z) {
     global const uint *cell = cells + (size_t)index * 4;
-    if (cell[3] == VIT_NONE)
+    if (cell[3] == VIT_NONE || cell[3] == VIT_RECEIVER_BY_RAYS)
         return cell;
     global const vit_receiver_split *s = splits + cell[3];
     return fma(z, s->normal[2], fma(y, s->normal[1], x * s->normal[0])) > s->offset ? cell : s->receiver;
 }
 
 /* Irradiance, W/m2, of the lanes' places p, at barycentric weights b1, b2 of a side of a triangle (back: -1 for the back); 0
- * elsewhere. Lane by lane: reads that wait for memory do not wait for each other, and neighbours mostly share a cell.
- * looked_up: with VIT_EFFECT_REACH, gets the receivers' bits. */
+ * elsewhere, and -1 where a lightmap's cell says that rays have to find it. Lane by lane: reads that wait for memory do not
+ * wait for each other, and neighbours mostly share a cell. looked_up: with VIT_EFFECT_REACH, gets the receivers' bits; NULL:
+ * nothing does. */
 static inline lv3 receivers_light(global const uint *sides, global const uint *cells, global const vit_receiver_split *splits,
                                   global const float *light, li lanes, li triangle, li back, lf b1, lf b2, lv3 p,
                                   volatile global uint *looked_up) {
     cell_place at = cell_at(sides, lanes, triangle, back, b1, b2);
     for (int level = 0; level < VIT_RECEIVER_LEVELS; level++) {
         lu kind = l_gather_u(cells, at.index * 4 + 3);
-        li divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)); /* VIT_RECEIVER_IS_DIVIDED */
+        li divided = lanes & L_LT(L_AS_INT(kind), L_I(-1)) & L_NE(L_AS_INT(kind & 255u), L_I(0)); /* VIT_RECEIVER_IS_DIVIDED */
         if (!l_any(divided))
             break;
         cell_place within =
@@ -103,11 +110,13 @@ static inline lv3 receivers_light(global const uint *sides, global const uint *c
         float4 e = VIT_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f);
         if (index[i] >= 0) {
             global const uint *of = receivers_of(cells, splits, index[i], place[0][i], place[1][i], place[2][i]);
-            for (int k = 0; VIT_EFFECT_REACH && k < 3; k++)
+            for (int k = 0; VIT_EFFECT_REACH && looked_up && k < 3; k++)
                 atomic_or(looked_up + of[k] / 32u, 1u << of[k] % 32u);
             e = vload4(of[0], light) * w[0][i];
             e = vit_along4(e, w[1][i], vload4(of[1], light));
             e = vit_along4(e, w[2][i], vload4(of[2], light));
+            if (VIT_EFFECT_LIGHTMAP_RAYS && cells[(size_t)index[i] * 4 + 3] == VIT_RECEIVER_BY_RAYS)
+                e = VIT_FLOAT4(-1.0f, -1.0f, -1.0f, 0.0f);
         }
         float out[4];
         vstore4(e, 0, out);

@@ -29,7 +29,7 @@ static inline lv3 sky_radiance(global const vit_scene *scene, global const vit_s
 /* Makes the packet's samples nothing: zeros. */
 static inline void samples_clear(global const vit_scene *scene, uint first, global float *position, global uint *normal,
                                  global uint *albedo, global uint *accept, global float *inverse_area, global uint *specular,
-                                 global float *indirect) {
+                                 global float *indirect, global uint *by_rays) {
     lv3 zero = lv3_set(L_F(0), L_F(0), L_F(0));
     sample_store_position(scene, zero, zero, L_I(0), position, first);
     L_STORE(L_U(0), normal + first);
@@ -44,6 +44,8 @@ static inline void samples_clear(global const vit_scene *scene, uint first, glob
         L_STORE(L_F(0), inverse_area + first);
     if (VIT_EFFECT_RECEIVERS)
         lv3_store_planes(zero, indirect, scene->samples, first);
+    if (VIT_EFFECT_LIGHTMAP_RAYS)
+        L_STORE(L_U(0), by_rays + first);
 }
 
 /* Radiance of surfaces that needs no light source: emission and ambient light. */
@@ -59,7 +61,8 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
                     global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
                     global const uint *cells, global float *position, global uint *normal, global uint *albedo,
                     global float *direct, global uint *accept, global float *inverse_area, global uint *specular,
-                    RECEIVER_PARAMETERS, global float *indirect, volatile global uint *reached WORK_PARAMETERS) {
+                    RECEIVER_PARAMETERS, global float *indirect, LIGHTMAP_PARAMETERS, global uint *by_rays,
+                    volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -122,9 +125,18 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
                                              hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position,
                                              VIT_EFFECT_REACH ? reached + scene->materials + VIT_REACHED_MORE : reached),
                              indirect, n, first);
+        /* 6. Baked light of the sky and of area lights. */
+        if (VIT_EFFECT_LIGHTMAP) {
+            lv3 e = receivers_light(LIGHTMAP, hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position, 0);
+            li unknown = L_LT(e.x, L_F(0));
+            if (VIT_EFFECT_LIGHTMAP_RAYS)
+                L_STORE(L_AS_UINT(unknown & 1), by_rays + first);
+            lv3 a = lv3_scale(l_decode_albedo(l_encode_albedo(s.albedo)), l_sel(hit & ~unknown, L_F(VIT_INV_PI), L_F(0)));
+            light = lv3_set(fma(a.x, e.x, light.x), fma(a.y, e.y, light.y), fma(a.z, e.z, light.z));
+        }
     } else if (l_any(L_NE(L_AS_INT(L_LOAD(albedo + first)), L_I((int)VIT_SAMPLE_NOTHING))))
         /* Else all this stands there already. */
-        samples_clear(scene, first, position, normal, albedo, accept, inverse_area, specular, indirect);
+        samples_clear(scene, first, position, normal, albedo, accept, inverse_area, specular, indirect, by_rays);
     else if (!VIT_EFFECT_SKY_IMAGE)
         return;
     /* Radiance that needs no light source: emission, ambient light and background. Direct light is added to it. */

@@ -3,7 +3,7 @@
  * over the window about it of those on the same surface, so that 16 times as many directions count as are traced. Albedo comes
  * after, so textures stay sharp. */
 
-#if VIT_WITH(SKY_LIGHT)
+#if VIT_WITH(SKY_RAYS)
 #define SKYLIGHT_BENT                                                                                                          \
     16.0f /* weight lost with the square of a neighbour's height over the tangent plane, by its distance: none left from 1/4   \
            */
@@ -17,11 +17,13 @@ kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_l
     if (first >= n || round_skips(first, active))
         return;
     li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
+    if (VIT_EFFECT_LIGHTMAP) /* the matt light of others is baked */
+        hit &= lit_shines(specular, first);
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
     if (l_any(hit)) {
         WORK_BEGIN
-        lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1, first, triangle,
-                           round / layers, &s WORK_PASS);
+        lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1,
+                           lit_set(first, round / layers), triangle, &s WORK_PASS);
         WORK_END
     }
     s.matt.x = l_sel(hit, s.matt.x, L_F(-1));
@@ -87,7 +89,7 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
             }
         }
     lf scale = l_sel(hit, l_div(1.0f, l_max(weights, L_F(1e-30f))), L_F(0));
-    s.matt = lv3_scale(s.matt, scale);
+    s.matt = lv3_scale(s.matt, VIT_EFFECT_LIGHTMAP ? L_F(0) : scale);
     s.glossy = lv3_scale(s.glossy, l_sel(hit, l_div(1.0f, l_max(lobe_weights, L_F(1e-30f))), L_F(0)));
     lit_store(scene, &s, first, albedo, specular, direct);
 }

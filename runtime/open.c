@@ -66,6 +66,10 @@ static vit_launch launch_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_DENSE;
     if (s->effects & (ON(MIRROR) | ON(GLASS)))
         l.effects |= ON_CHAINS;
+    if (!(s->effects & ON(LIGHTMAP)) || (s->effects & ON(SPECULAR))) { /* lobes reflect what a lightmap does not say */
+        l.effects |= s->effects & ON(SKY_LIGHT) ? ON_SKY_RAYS : 0;
+        l.effects |= s->effects & ON(AREA_LIGHTS) ? ON_AREA_RAYS : 0;
+    }
     if (vit_view_light(info->view) != 0 && (s->effects & (ON(ANTIALIAS) | ON(GLASS))))
         l.effects |= ON_FILM;
     l.layers = l.effects & ON_FILM && s->effects & ON(GLASS) ? 2 : 1;

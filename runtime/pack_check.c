@@ -205,16 +205,8 @@ vit_status vit_pack_check_ATLS(const vit_pack *p, vit_text *why) {
 
 vit_status vit_pack_check_SIDE(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
-    const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
     const vit_u32 cells = s->cells > 0 ? s->cells : s->receiver_cells; /* effects ZONES and AREA, or receivers */
-    for (uint64_t i = 0; cells > 0 && i < 2 * (uint64_t)s->triangles; i++) {
-        const vit_u32 side = *VIT_RECORD(vit_u32, sides, i);
-        const uint64_t parts = side >> VIT_SIDE_PARTS_SHIFT, first = side & VIT_SIDE_CELL;
-        if (parts < 1 || first + parts * parts > cells)
-            return vit_pack_refuse(why, "section SIDE: side %llu: %llu parts from cell %llu on, of %u cells",
-                                   (unsigned long long)i, (unsigned long long)parts, (unsigned long long)first, cells);
-    }
-    return VIT_OK;
+    return vit_pack_check_sides(p, VIT_SECTION_SIDE, cells, why);
 }
 
 vit_status vit_pack_check_CELL(const vit_pack *p, vit_text *why) {

@@ -25,9 +25,13 @@ vit_pack_check vit_pack_check_GEOM, vit_pack_check_BVHN;
 vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_TEXR,
     vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL, vit_pack_check_EMIT,
     vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
-/* pack_check_basis.c: receivers, and what light that moves does to them. */
-vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vit_pack_check_BGRP, vit_pack_check_BWRD,
-    vit_pack_check_BCOE, vit_pack_check_BFRM;
+/* pack_check_receivers.c: receivers of indirect light, and of the lightmap. */
+vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vit_pack_check_MSID, vit_pack_check_MCEL,
+    vit_pack_check_MSPL, vit_pack_check_MREC;
+/* Sides of triangles, SIDE or MSID, whose cells are among so many. */
+vit_status vit_pack_check_sides(const vit_pack *p, vit_section section, vit_u32 cells, vit_text *why);
+/* pack_check_basis.c: what light that moves does to receivers. */
+vit_pack_check vit_pack_check_BGRP, vit_pack_check_BWRD, vit_pack_check_BCOE, vit_pack_check_BFRM;
 /* pack_check_radiosity.c: patches, and what receivers see of them. */
 vit_pack_check vit_pack_check_PATC, vit_pack_check_PPNT, vit_pack_check_GROW, vit_pack_check_GATH, vit_pack_check_LOOK,
     vit_pack_check_XFER;

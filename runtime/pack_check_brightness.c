@@ -48,6 +48,16 @@ static double of_points(const vit_pack *p, double least2) {
     return sum;
 }
 
+/* Baked direct light. */
+static double of_lightmap(const vit_pack *p) {
+    double most = 0.0;
+    for (vit_u32 i = 0; i < p->scene->map_receivers; i++) {
+        const double e = largest(VIT_RECORD(vit_receiver, (const vit_receiver *)p->section[VIT_SECTION_MREC], i)->irradiance);
+        most = e > most ? e : most;
+    }
+    return most;
+}
+
 static double of_stored_photons(const vit_pack *p) {
     double sum = 0.0;
     for (vit_u32 i = 0; i < p->scene->baked; i++)
@@ -79,7 +89,8 @@ vit_status vit_pack_check_brightness(const vit_pack *p, vit_text *why) {
         return vit_pack_refuse(why, "section META: lights, and a ray_offset of %g m: its square vanishes",
                                (double)s->ray_offset);
     look_at_materials(p, &peak, &own);
-    const double points = of_points(p, least2), stored = of_stored_photons(p), basis = vit_pack_basis_bound(p, &still);
+    const double points = of_points(p, least2) + of_lightmap(p), stored = of_stored_photons(p),
+                 basis = vit_pack_basis_bound(p, &still);
     for (vit_u32 frame = 0; frame < s->frames; frame++) {
         const double exposure = VIT_RECORD(vit_camera, (const vit_camera *)p->section[VIT_SECTION_CAMS], frame)->exposure;
         of_lights(p, frame, least2, &direct, &traced, &shining);

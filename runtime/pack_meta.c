@@ -65,8 +65,9 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return s->pad == 0 && s->cache_pad[0] == 0 && s->cache_pad[1] == 0 ? VIT_OK
-                                                                       : vit_pack_refuse(why, "section META: padding is not 0");
+    return s->pad == 0 && s->map_pad == 0 && s->cache_pad[0] == 0 && s->cache_pad[1] == 0
+               ? VIT_OK
+               : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -120,6 +121,17 @@ static vit_status check_receivers(const vit_scene *s, vit_text *why) {
     return VIT_OK;
 }
 
+static vit_status check_lightmap(const vit_scene *s, vit_text *why) {
+    const bool map = s->effects & VIT_BIT(LIGHTMAP);
+    if (map && !(s->effects & (VIT_BIT(SKY_LIGHT) | VIT_BIT(AREA_LIGHTS))))
+        return vit_pack_refuse(why, "section META: effect LIGHTMAP without SKY_LIGHT and AREA_LIGHTS");
+    if ((s->map_receivers > 0) != map || (s->map_cells > 0) != map || (s->map_splits > 0 && !map))
+        return vit_pack_refuse(why,
+                               "section META: lightmap of %u receivers, %u cells and %u splits contradicts the effect LIGHTMAP",
+                               s->map_receivers, s->map_cells, s->map_splits);
+    return VIT_OK;
+}
+
 static vit_status check_effects(const vit_scene *s, vit_text *why) {
 #define X(bit, name, macro, reason) | VIT_BIT(macro)
     const vit_u64 known = 0u VIT_EFFECTS(X);
@@ -145,7 +157,9 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why, "section META: %u paths contradict the effect TRACED", s->paths);
     if ((s->cells > 0) != ((e & (VIT_BIT(ZONES) | VIT_BIT(AREA))) != 0))
         return vit_pack_refuse(why, "section META: %u cells contradict the effects ZONES and AREA", s->cells);
-    status = check_receivers(s, why);
+    if ((status = check_receivers(s, why)) != VIT_OK)
+        return status;
+    status = check_lightmap(s, why);
     if (status != VIT_OK)
         return status;
     if ((s->area_samples > 0) != ((e & VIT_BIT(AREA_LIGHTS)) != 0) || (s->sky_samples > 0) != ((e & VIT_BIT(SKY_LIGHT)) != 0))

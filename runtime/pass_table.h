@@ -42,17 +42,19 @@
     X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \
       ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                                  \
     X(samples, ALWAYS, EACH, PER_SAMPLE, ONCE,                                                                                 \
-      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular) | W(indirect), ARGS_SURFACE, \
-      ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), B(albedo),    \
-      B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits), B(receivers), B(relit),       \
-      B(indirect), B(reached), ARGS_WORK)                                                                                      \
+      W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular) | W(indirect) | W(by_rays),  \
+      ARGS_SURFACE, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), \
+      B(albedo), B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits), B(receivers),      \
+      B(relit), B(indirect), B(map_sides), B(map_cells), B(map_splits), B(map_receivers), B(by_rays), B(reached), ARGS_WORK)   \
     X(direct_light, ON(LIGHTS), EACH, PER_BUNDLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle),          \
       B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
-    X(area_light, ON(AREA_LIGHTS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),  \
+    X(lightmap_rays, ON(LIGHTMAP_RAYS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights),              \
+      B(hit_triangle), B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), B(by_rays), ARGS_WORK)              \
+    X(area_light, ON_AREA_RAYS, EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),     \
       B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
-    X(sky_light, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(skylight), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),   \
+    X(sky_light, ON_SKY_RAYS, EACH, PER_SAMPLE, ONCE, W(skylight), ARGS_RAYS, ARGS_ROUND, B(area_lights), B(hit_triangle),     \
       B(position), B(normal), B(rays), B(specular), B(skylight), ARGS_WORK)                                                    \
-    X(sky_filter, ON(SKY_LIGHT), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(specular),  \
+    X(sky_filter, ON_SKY_RAYS, EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(specular),    \
       B(skylight), B(direct))                                                                                                  \
     X(ambient_light, ON(OCCLUSION), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(hit_triangle), B(position),     \
       B(normal), B(albedo), B(specular), B(cache), B(direct), ARGS_WORK)                                                       \

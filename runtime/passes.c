@@ -110,6 +110,8 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l) {
         return l->effects & ON(ANTIALIAS) ? "antialias" : "glass";
     if (by & ON_REACH)
         return "record_reach";
+    if (by & (ON_SKY_RAYS | ON_AREA_RAYS))
+        return by & ON_SKY_RAYS ? "sky-light" : "area-lights";
     return by & ON_DOTS ? "view photons" : by & ON_WORK ? "count_work" : "not called for";
 }
 

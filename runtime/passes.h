@@ -8,12 +8,14 @@
 
 #define ON(macro) VIT_BIT(macro)
 /* Not effects of the pack: */
-#define ON_DOTS ((uint64_t)1 << 63)   /* the view `photons` */
-#define ON_WORK ((uint64_t)1 << 62)   /* vit_open_info.count_work */
-#define ON_DENSE ((uint64_t)1 << 61)  /* indirect light is estimated at every sample: estimate_all */
-#define ON_FILM ((uint64_t)1 << 60)   /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
-#define ON_CHAINS ((uint64_t)1 << 59) /* mirrors or glass: view rays go on from hits */
-#define ON_REACH ((uint64_t)1 << 58)  /* vit_open_info.record_reach */
+#define ON_DOTS ((uint64_t)1 << 63)      /* the view `photons` */
+#define ON_WORK ((uint64_t)1 << 62)      /* vit_open_info.count_work */
+#define ON_DENSE ((uint64_t)1 << 61)     /* indirect light is estimated at every sample: estimate_all */
+#define ON_FILM ((uint64_t)1 << 60)      /* a pixel has more than one sample: copies for anti-aliasing, layers for glass */
+#define ON_CHAINS ((uint64_t)1 << 59)    /* mirrors or glass: view rays go on from hits */
+#define ON_REACH ((uint64_t)1 << 58)     /* vit_open_info.record_reach */
+#define ON_SKY_RAYS ((uint64_t)1 << 57)  /* rays find the sky's light: all of it, or with a lightmap what lobes reflect, */
+#define ON_AREA_RAYS ((uint64_t)1 << 56) /* and that of area lights */
 #define ALWAYS ((uint64_t)0)
 #define ON_RECEIVERS (ON(BASIS) | ON(RADIOSITY)) /* baked places at which indirect light is known */
 
@@ -72,7 +74,11 @@ typedef struct vit_launch {
     X(looked_up, ON(RADIOSITY), LOOK, (uint64_t)VIT_LOOKED_SETS(s) * (s->receivers / 32) * 4)                                  \
     X(transfer, ON(TRANSFER), XFER, (uint64_t)s->transfer_words * 4)                                                           \
     X(cache, ON(OCCLUSION), CACH, s->cache_cells * sizeof(vit_cache_cell))                                                     \
-    X(area_lights, ON(AREA_LIGHTS) | ON(SKY_LIGHT), EMIT,                                                                      \
+    X(map_sides, ON(LIGHTMAP), MSID, s->triangles *(uint64_t)8)                                                                \
+    X(map_cells, ON(LIGHTMAP), MCEL, s->map_cells * sizeof(vit_receiver_cell))                                                 \
+    X(map_splits, ON(LIGHTMAP), MSPL, s->map_splits * sizeof(vit_receiver_split))                                              \
+    X(map_receivers, ON(LIGHTMAP), MREC, s->map_receivers * sizeof(vit_receiver))                                              \
+    X(area_lights, ON_SKY_RAYS | ON_AREA_RAYS | ON(LIGHTMAP_RAYS), EMIT,                                                       \
       VIT_PATTERNS * ((uint64_t)s->area_samples + s->sky_samples) * sizeof(vit_light_sample))                                  \
     X(sky, ON(SKY_IMAGE), SKYT, (s->sky_size + (uint64_t)2) * (s->sky_size + 2) * sizeof(vit_sky_texel))                       \
     X(hit_triangle, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                    \
@@ -82,7 +88,8 @@ typedef struct vit_launch {
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
     X(specular, ON(SPECULAR), NONE, (uint64_t)s->samples * 8)                                                                  \
-    X(skylight, ON(SKY_LIGHT), NONE, (uint64_t)s->samples *(l->effects & ON(SPECULAR) ? 24 : 12))                              \
+    X(skylight, ON_SKY_RAYS, NONE, (uint64_t)s->samples *(l->effects & ON(SPECULAR) ? 24 : 12))                                \
+    X(by_rays, ON(LIGHTMAP_RAYS), NONE, (uint64_t)s->samples * 4)                                                              \
     X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                        \
     X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                             \
     X(active, ON_FILM, NONE, s->samples / 16 * 4)                                                                              \

@@ -16,9 +16,10 @@
     X(activate, z->activate *(z->samples / 16))                                                                                \
     X(chains, (4 + 4 + 4 + 4 + 40) * z->samples + HITS)                                                                        \
     X(visibility, (4 + 4) * z->samples)                                                                                        \
-    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->specular + z->indirect) * z->samples +               \
-                   (z->cell + z->received) * w[VIT_WORK_surface_points] + HITS)                                                \
+    X(samples, (4 + 4 + z->position + 4 + 4 + 12 + z->baked + z->end + z->specular + z->indirect + z->by_rays) * z->samples +  \
+                   (z->cell + z->received + z->mapped) * w[VIT_WORK_surface_points] + HITS)                                    \
     X(direct_light, LIT * z->samples + z->lights)                                                                              \
+    X(lightmap_rays, (LIT + z->by_rays) * z->samples + sizeof(vit_light_sample) * w[VIT_WORK_shadow_rays])                     \
     X(area_light, (LIT + sizeof(vit_light_sample) * (VIT_PATTERNS + 1) * z->area_samples) * z->samples)                        \
     X(sky_light,                                                                                                               \
       (4 + z->position + 4 + z->face + z->view + z->specular / 2 + z->skylight + sizeof(vit_light_sample) * z->sky_samples) *  \
@@ -81,6 +82,7 @@ typedef struct sizes {
     uint64_t lamps;              /* bytes per sample: whether it is an area light */
     uint64_t skylight;           /* bytes per sample: of the sky's irradiance, and of what the lobe reflects of it */
     uint64_t received, indirect; /* bytes: of side, cell and receivers that a hit looks up, per sample of the light written */
+    uint64_t mapped, by_rays;    /* bytes: likewise of the lightmap, and per sample whether rays find its light */
     uint64_t relit;              /* bytes: of all receivers, read and written, and of what is read of a frame's lights */
     uint64_t points, patches, stride, receivers;        /* numbers of records */
     uint64_t right, mix, coded, projected, mixed, sums; /* bytes: of the transfer matrix's parts, and of what is between */
@@ -159,6 +161,8 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
     z.indirect = l->effects & ON_RECEIVERS ? 12 : 0;
     z.received = l->effects & ON_RECEIVERS ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
+    z.mapped = l->effects & ON(LIGHTMAP) ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
+    z.by_rays = l->effects & ON(LIGHTMAP_RAYS) ? 4 : 0;
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;
     z.corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX_BYTES(z.zones) / 8;
     z.relit = s->receivers * (sizeof(vit_receiver) + 16) + s->basis_lights * sizeof(vit_basis_frame) +

@@ -57,7 +57,10 @@ static inline void lab_options(char *text, size_t size, unsigned lanes, vit_u64 
     VIT_EFFECTS(X)
 #undef X
     /* Of the modes only what the effects themselves ask for. */
-    const unsigned FILM = 0, DOTS = 0, REACH = 0, CHAINS = (effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0;
+    const unsigned FILM = 0, DOTS = 0, REACH = 0, CHAINS = (effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0,
+                   LOOKED_UP = (effects & VIT_BIT(LIGHTMAP)) && !(effects & VIT_BIT(SPECULAR)),
+                   SKY_RAYS = (effects & VIT_BIT(SKY_LIGHT)) && !LOOKED_UP,
+                   AREA_RAYS = (effects & VIT_BIT(AREA_LIGHTS)) && !LOOKED_UP;
 #define X(macro) n += snprintf(text + n, n < (int)size ? size - (size_t)n : 0, " -DVIT_EFFECT_" #macro "=%u", macro);
     VIT_MODES(X)
 #undef X

@@ -20,6 +20,8 @@ enum {
     FIXTURE_GROUPS = 2,
     FIXTURE_RECEIVERS = FIXTURE_GROUPS * VIT_BASIS_GROUP,
     FIXTURE_SPLITS = 2,
+    FIXTURE_MAP_CELLS = 30,
+    FIXTURE_MAP_RECEIVERS = 40,
     FIXTURE_WORDS = VIT_BASIS_RANK * VIT_BASIS_GROUP / 2,
     FIXTURE_KNOTS = 3, /* of the second light; the first has one less */
     FIXTURE_COEFFICIENTS = VIT_BASIS_RANK * FIXTURE_KNOTS,
@@ -56,6 +58,10 @@ typedef struct pack_fixture {
     vit_receiver_cell receiver_cells[FIXTURE_CELLS];
     vit_receiver_split splits[FIXTURE_SPLITS];
     vit_receiver receivers[FIXTURE_RECEIVERS];
+    vit_u32 map_sides[2 * FIXTURE_TRIANGLES];
+    vit_receiver_cell map_cells[FIXTURE_MAP_CELLS];
+    vit_receiver_split map_splits[FIXTURE_SPLITS];
+    vit_receiver map_receivers[FIXTURE_MAP_RECEIVERS];
     vit_basis_group groups[FIXTURE_GROUPS * FIXTURE_LIGHTS];
     vit_u32 words[FIXTURE_WORDS];
     vit_basis_coefficient coefficients[FIXTURE_COEFFICIENTS];
@@ -326,6 +332,29 @@ static inline void fixture_make_basis(pack_fixture *f) {
     vit_pack_derive(&f->scene, NULL);
 }
 
+/* fixture_make() with a lightmap. Cells of the sides are 0 .. 25, one each: cell 2 is divided into 26 .. 29, rays find the
+ * light of cells 5 and 28, and cells 0 and 29 are parted. */
+static inline void fixture_make_lightmap(pack_fixture *f) {
+    fixture_make(f);
+    f->scene.effects |= VIT_BIT(LIGHTMAP) | VIT_BIT(LIGHTMAP_RAYS);
+    f->scene.map_cells = FIXTURE_MAP_CELLS;
+    f->scene.map_splits = FIXTURE_SPLITS;
+    f->scene.map_receivers = FIXTURE_MAP_RECEIVERS;
+    for (vit_u32 i = 0; i < 2 * FIXTURE_TRIANGLES; i++)
+        f->map_sides[i] = 1u << VIT_SIDE_PARTS_SHIFT | i % 26;
+    for (vit_u32 i = 0; i < FIXTURE_MAP_CELLS; i++)
+        f->map_cells[i] = (vit_receiver_cell){.receiver = {i, i + 1, FIXTURE_MAP_RECEIVERS - 1 - i}, .split = VIT_NONE};
+    f->map_cells[0].split = 0;
+    f->map_cells[29].split = 1;
+    f->map_cells[2] = (vit_receiver_cell){.receiver = {26}, .split = VIT_RECEIVER_DIVIDED | 2};
+    f->map_cells[5] = f->map_cells[28] = (vit_receiver_cell){.split = VIT_RECEIVER_BY_RAYS};
+    f->map_splits[0] = (vit_receiver_split){.normal = {1, 0, 0}, .offset = 0.5f, .receiver = {1, 2, FIXTURE_MAP_RECEIVERS - 1}};
+    f->map_splits[1] = (vit_receiver_split){.normal = {0, -1, 0}, .receiver = {3, 2, 1}};
+    for (vit_u32 i = 0; i < FIXTURE_MAP_RECEIVERS; i++)
+        f->map_receivers[i] = (vit_receiver){.irradiance = {0.5f * (float)i, 2.0f, 0.25f}};
+    vit_pack_derive(&f->scene, NULL);
+}
+
 static inline vit_u32 fixture_bits(float x) {
     vit_u32 bits;
     memcpy(&bits, &x, sizeof bits);
@@ -422,16 +451,18 @@ static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
 static inline pack_sections fixture_sections(const pack_fixture *f) {
     return (pack_sections){
         .data = {
-            [VIT_SECTION_META] = &f->scene,       [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
-            [VIT_SECTION_GEOM] = f->triangles,    [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
-            [VIT_SECTION_MATL] = f->materials,    [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
-            [VIT_SECTION_ATLS] = f->texels,       [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
-            [VIT_SECTION_EMIT] = f->emitters,     [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
-            [VIT_SECTION_RSPL] = f->splits,       [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
-            [VIT_SECTION_BWRD] = f->words,        [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
-            [VIT_SECTION_PATC] = f->patches,      [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
-            [VIT_SECTION_GATH] = f->gather_words, [VIT_SECTION_LOOK] = f->looked_up,    [VIT_SECTION_XFER] = f->transfer,
-            [VIT_SECTION_CACH] = f->cache,        [VIT_SECTION_PHOT] = f->photons,      [VIT_SECTION_GOLD] = f->golds,
+            [VIT_SECTION_META] = &f->scene,        [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
+            [VIT_SECTION_GEOM] = f->triangles,     [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
+            [VIT_SECTION_MATL] = f->materials,     [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
+            [VIT_SECTION_ATLS] = f->texels,        [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
+            [VIT_SECTION_EMIT] = f->emitters,      [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
+            [VIT_SECTION_RSPL] = f->splits,        [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
+            [VIT_SECTION_BWRD] = f->words,         [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
+            [VIT_SECTION_PATC] = f->patches,       [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
+            [VIT_SECTION_GATH] = f->gather_words,  [VIT_SECTION_LOOK] = f->looked_up,    [VIT_SECTION_XFER] = f->transfer,
+            [VIT_SECTION_MSID] = f->map_sides,     [VIT_SECTION_MCEL] = f->map_cells,    [VIT_SECTION_MSPL] = f->map_splits,
+            [VIT_SECTION_MREC] = f->map_receivers, [VIT_SECTION_CACH] = f->cache,        [VIT_SECTION_PHOT] = f->photons,
+            [VIT_SECTION_GOLD] = f->golds,
         }};
 }
 

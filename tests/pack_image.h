@@ -36,6 +36,10 @@ typedef struct image {
     vit_receiver_cell *receiver_cells;
     vit_receiver_split *splits;
     vit_receiver *receivers;
+    vit_u32 *map_sides;
+    vit_receiver_cell *map_cells;
+    vit_receiver_split *map_splits;
+    vit_receiver *map_receivers;
     vit_basis_group *groups;
     vit_u32 *words;
     vit_basis_coefficient *coefficients;
@@ -76,6 +80,10 @@ static inline image image_of(const pack_fixture *f) {
     im.receiver_cells = section(&im, VIT_SECTION_RCEL);
     im.splits = section(&im, VIT_SECTION_RSPL);
     im.receivers = section(&im, VIT_SECTION_RECV);
+    im.map_sides = section(&im, VIT_SECTION_MSID);
+    im.map_cells = section(&im, VIT_SECTION_MCEL);
+    im.map_splits = section(&im, VIT_SECTION_MSPL);
+    im.map_receivers = section(&im, VIT_SECTION_MREC);
     im.groups = section(&im, VIT_SECTION_BGRP);
     im.words = section(&im, VIT_SECTION_BWRD);
     im.coefficients = section(&im, VIT_SECTION_BCOE);
@@ -93,10 +101,13 @@ static inline image image_of(const pack_fixture *f) {
 }
 
 /* The fixtures: between them no section is empty. */
-typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_LIVE, FIXTURE_KINDS } fixture_kind;
+typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_LIVE, FIXTURE_LIGHTMAP, FIXTURE_KINDS } fixture_kind;
 
 static inline void fixture_make_kind(pack_fixture *f, fixture_kind kind) {
-    kind == FIXTURE_LIVE ? fixture_make_live(f) : kind == FIXTURE_BASIS ? fixture_make_basis(f) : fixture_make(f);
+    kind == FIXTURE_LIGHTMAP ? fixture_make_lightmap(f)
+    : kind == FIXTURE_LIVE   ? fixture_make_live(f)
+    : kind == FIXTURE_BASIS  ? fixture_make_basis(f)
+                             : fixture_make(f);
 }
 
 static inline image valid_image_of(fixture_kind kind) {

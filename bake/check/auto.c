@@ -101,8 +101,9 @@ static vit_status choose_bounces(search *s, const pipeline_packed *packed, vit_t
 /* More points on area lights, more directions to the sky, as long as direct light is off and that helps. */
 static vit_status choose_samples(search *s, const pipeline_packed *packed, double direct, vit_text *why) {
     const uint64_t e = packed->plan.scene.effects;
-    const bool points = (e & VIT_BIT(AREA_LIGHTS)) && !kept(s, SETTING_BIT(light_samples)),
-               directions = (e & VIT_BIT(SKY_LIGHT)) && !kept(s, SETTING_BIT(sky_samples));
+    const bool rays = !(e & VIT_BIT(LIGHTMAP)) || (e & VIT_BIT(SPECULAR)),
+               points = rays && (e & VIT_BIT(AREA_LIGHTS)) && !kept(s, SETTING_BIT(light_samples)),
+               directions = rays && (e & VIT_BIT(SKY_LIGHT)) && !kept(s, SETTING_BIT(sky_samples));
     for (int samples = 64; (points || directions) && samples <= MOST_SAMPLES && fabs(direct - 1) > AUTO_DIRECT; samples *= 4) {
         scene_quality q = s->base;
         check_found found;

@@ -19,7 +19,8 @@ void check_cure(const check_found *f, const scene_quality *q, const plan *p, cha
     text[0] = '\0';
     const bool leaks = indirect && f->indirect - 1 > fmax(MUCH, fabs(f->direct - 1)); /* no direct light is to blame for */
     if (!leaks && fabs(f->direct - 1) > CHECK_LIMIT / 2 && (e & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))))
-        (void)snprintf(text, room, "raise %s",
+        (void)snprintf(text, room,
+                       e & VIT_BIT(LIGHTMAP) ? "lower lightmap_error, or raise %s with lightmap = \"rays\"" : "raise %s",
                        !(e & VIT_BIT(SKY_LIGHT))     ? "light_samples"
                        : !(e & VIT_BIT(AREA_LIGHTS)) ? "sky_samples"
                                                      : "light_samples and sky_samples");

@@ -272,6 +272,14 @@ area_light_point area_lights_point(const area_lights *e, double x, double y) {
     return place_among(&e->scene, e->side, e->sum, e->count, x, y);
 }
 
+float area_lights_spread(const area_lights *e, uint32_t side) {
+    const uint32_t at = place_in_list(e->side, e->count, side);
+    if (at == ESCAPES)
+        return 0.0f;
+    const double weight = e->sum[at] - (at > 0 ? e->sum[at - 1] : 0.0);
+    return (float)(side_area(&e->scene, side) * e->sum[e->count - 1] / weight);
+}
+
 /* Sides that face alike, of six directions. */
 static int facing(vec3 n) {
     const float x = fabsf(n.x), y = fabsf(n.y), z = fabsf(n.z);

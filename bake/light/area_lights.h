@@ -35,6 +35,9 @@ typedef struct area_light_point {
 /* The point for 0 < x, y < 1: even over the unit square gives the density. Not for an empty set. */
 area_light_point area_lights_point(const area_lights *e, double x, double y);
 
+/* area_light_point.area of points on the side, 2 * triangle, + 1 for the back; 0: it lights nothing. */
+float area_lights_spread(const area_lights *e, uint32_t side);
+
 /* How near to each material that shines `samples` points per set are too far apart: as near as the radius of twice the disc
  * that the point of its side of fewest stands for. Before area_lights_sets(); `materials` are e->scene's, near2 0. */
 void area_lights_near(const area_lights *e, uint32_t samples, vit_material *materials);

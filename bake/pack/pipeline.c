@@ -14,10 +14,10 @@ static const struct {
     vit_status (*run)(bake *b, vit_text *why);
     bool again; /* only if the stage before asks for it */
 } pack_stages[] = {
-    {stage_choose_shape, false}, {stage_plan, false},     {stage_guiding, false}, {stage_area_lights, false},
-    {stage_photons, false},      {stage_radius, false},   {stage_photons, true},  {stage_zones, false},
-    {stage_photons, true},       {stage_indirect, false}, {stage_cache, false},   {stage_frames, false},
-    {stage_bounds, false},       {stage_assemble, false},
+    {stage_choose_shape, false}, {stage_plan, false},     {stage_guiding, false},  {stage_area_lights, false},
+    {stage_photons, false},      {stage_radius, false},   {stage_photons, true},   {stage_zones, false},
+    {stage_photons, true},       {stage_indirect, false}, {stage_lightmap, false}, {stage_cache, false},
+    {stage_frames, false},       {stage_bounds, false},   {stage_assemble, false},
 };
 
 vit_status out_of_memory(vit_text *why) {
@@ -70,6 +70,7 @@ void pipeline_free(pipeline *p) {
     if (p->kept_baked)
         baked_kept_free(p->kept_baked);
     free(p->kept_baked);
+    lightmap_kept_free(&p->kept_lightmap);
     photon_guiding_free(&p->guided.guiding);
     sky_free(&p->sky);
     atlas_free(&p->atlas);
@@ -140,6 +141,7 @@ void pipeline_packed_free(pipeline_packed *packed) {
     free(packed->met);
     free(packed->area_lights);
     cells_free(&packed->cells);
+    lightmap_free(&packed->lightmap);
     baked_free(&packed->baked);
     live_free(&packed->live);
     occlusion_free(&packed->occlusion);

@@ -10,6 +10,7 @@
 #include "pack/pack_write.h"
 #include "pack/planner.h"
 #include "radiosity/kept.h"
+#include "radiosity/lightmap.h"
 #include "radiosity/live.h"
 #include "common/progress.h"
 #include "geometry/quantise.h"
@@ -43,6 +44,7 @@ typedef struct pipeline {
     environment sky;
     zones_kept *kept;
     baked_kept *kept_baked;
+    lightmap_kept kept_lightmap;
     pipeline_guiding guided;     /* of the last pack that guides photons */
     char indirect_why[PLAN_WHY]; /* why scene.quality.indirect is what it is; empty: it is stated */
 } pipeline;
@@ -73,6 +75,7 @@ typedef struct pipeline_packed {
     tracks tracks; /* of the frames that were chosen */
     cells cells;   /* zones and effective areas; none without them */
     zones_found zones;
+    lightmap lightmap;             /* none without the effect LIGHTMAP */
     baked baked;                   /* indirect light; none without the effects BASIS and RADIOSITY */
     live live;                     /* none without the effect RADIOSITY */
     occlusion occlusion;           /* none without the effect OCCLUSION */

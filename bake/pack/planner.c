@@ -310,6 +310,7 @@ static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
     if (in->dark_sides->dark_sides > 0)
         c->effects |= VIT_BIT(DARK_SIDES);
     effects_force(s, c, &p->effects);
+    p->lightmap = s->quality.lightmap != LIGHTMAP_RAYS && c->effects & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT));
     p->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     if (!has_paths(in->tracks, p)) /* its sources were left out */

@@ -25,6 +25,8 @@ typedef struct plan {
     double free_path;                /* dark_sides.free_path, m */
     int indirect;                    /* INDIRECT_* that makes indirect light, not AUTO */
     char indirect_why[PLAN_WHY];     /* "auto": why that one; else empty */
+    bool lightmap;                   /* the sky's and area lights' matt light is to be baked */
+    char lightmap_why[PLAN_WHY];     /* "auto": why it is by rays all the same; else empty */
     uint32_t reflections;            /* of baked indirect light, at most; 0: as many as there are */
     effects_decided effects;
 } plan;

@@ -37,6 +37,8 @@ vit_status stage_zones(bake *b, vit_text *why);
 vit_status stage_indirect(bake *b, vit_text *why);
 /* stages_cache.c. */
 vit_status stage_cache(bake *b, vit_text *why);
+/* stages_lightmap.c. */
+vit_status stage_lightmap(bake *b, vit_text *why);
 /* stages_bounds.c. */
 vit_status stage_frames(bake *b, vit_text *why);
 vit_status stage_bounds(bake *b, vit_text *why);

@@ -1,6 +1,7 @@
 /* Cells within which light changes much are divided once more, and so are their parts: by how much it differs between corners,
  * at a first look, against what there is. Where a neighbour is divided less often, what lies on the common edge takes the
  * neighbour's light, as hanging nodes of finite elements do. */
+#include "common/parallel.h"
 #include "radiosity/receivers_parts.h"
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,8 @@
 #define STEP 0.4f         /* of the light at the corners of a part, over its mean; half of that where parts are divided */
 #define RANGE 1.7         /* of three numbers: deviations between the least and the largest, on average */
 #define DIM 0.02f         /* of the mean of all: less counts as so much */
+#define PARTS_BY_LIGHT 4u /* of a piece, along each edge, at most, where light of places tells */
+#define MOST_COLUMNS 3u   /* of that */
 #define MORE_STEP 1.3f    /* where there would be too many */
 #define MORE 1u           /* receivers of parts, at most so many times the records of cells, */
 #define MORE_LEAST 16384u /* or so many; parts of parts, always */
@@ -27,6 +30,102 @@ static float contrast_of(const placing *p, uint32_t piece, const float *irradian
     return differ > 0.0 && sum + DIM * mean > 0.0 ? (float)(differ / (sum + DIM * mean)) : 0.0f;
 }
 
+/* Light in the middles of pieces, against what interpolation says of it. */
+typedef struct judging {
+    const placing *p;
+    const float *irradiance;
+    double mean;
+    uint32_t first; /* piece */
+} judging;
+
+/* How far off interpolation is at weights w of the piece's corners, over the light there; all columns together. */
+static float off_at(const judging *j, uint32_t index, const float w[3]) {
+    const placing *p = j->p;
+    const receiver_piece *piece = p->pieces + index;
+    const vit_receiver_cell *cell = p->out->cells + index;
+    const cell_corners *k = &piece->at;
+    const float b1 = w[0] * k->b1[0] + w[1] * k->b1[1] + w[2] * k->b1[2],
+                b2 = w[0] * k->b2[0] + w[1] * k->b2[1] + w[2] * k->b2[2];
+    const vit_receiver_split *s = cell->split == VIT_NONE ? NULL : p->out->splits + cell->split;
+    const bool front = !s || vec3_dot(vec3_load(s->normal), side_place(p->in->geometry, piece->side, b1, b2)) > s->offset;
+    const vit_u32 *r = front ? cell->receiver : s->receiver;
+    float light[MOST_COLUMNS];
+    double off = 0.0, sum = 0.0;
+    p->in->light(p->in->user, piece->side, b1, b2, light);
+    for (uint32_t c = 0; c < p->in->columns; c++) {
+        double known = 0.0;
+        for (int i = 0; i < 3; i++)
+            known += (double)w[i] * (double)j->irradiance[(size_t)r[i] * p->in->columns + c];
+        off += fabs((double)light[c] - known);
+        sum += (double)light[c];
+    }
+    return sum + DIM * j->mean > 0.0 ? (float)(off / (sum + DIM * j->mean)) : 0.0f;
+}
+
+/* Of cells, which are large, the middles of four parts are looked at, else one. */
+static void judge(void *user, uint32_t item) {
+    static const float at[4][3] = {{1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f},
+                                   {2.0f / 3.0f, 1.0f / 6.0f, 1.0f / 6.0f},
+                                   {1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f},
+                                   {1.0f / 6.0f, 1.0f / 6.0f, 2.0f / 3.0f}};
+    const judging *j = user;
+    const placing *p = j->p;
+    const uint32_t index = j->first + item;
+    const bool whole = index < p->cells.count;
+    receiver_piece *piece = p->pieces + index;
+    if (!p->met[piece->side] || (whole && !p->looked_at[index]))
+        return;
+    for (int i = 0; i < (whole ? 4 : 1); i++)
+        piece->off = float_max(piece->off, off_at(j, index, at[i]));
+}
+
+static double mean_of(const placing *p, const float *irradiance) {
+    double mean = 0.0;
+    for (size_t i = 0; i < (size_t)p->out->count * p->in->columns; i++)
+        mean += (double)irradiance[i] / p->out->count;
+    return mean;
+}
+
+/* Of pieces that have come since the last time. */
+static void judge_pieces(placing *p, const float *irradiance, double mean) {
+    const judging j = {.p = p, .irradiance = irradiance, .mean = mean, .first = p->begin};
+    parallel_for(p->in->threads, p->end - p->begin, judge, (void *)(uintptr_t)&j);
+}
+
+/* A piece may be divided into so many parts along each edge. */
+static uint32_t finest_parts(const placing *p, const receiver_piece *piece) {
+    const float parts = p->finest / (float)piece->finer;
+    return parts > (float)PARTS_BY_LIGHT ? PARTS_BY_LIGHT : parts > 1.0f ? (uint32_t)parts : 1u;
+}
+
+void receivers_find_unknown(placing *p, const float *irradiance) {
+    double all = 0.0, unknown = 0.0;
+    judge_pieces(p, irradiance, mean_of(p, irradiance));
+    for (uint32_t i = 0; i < p->piece_count; i++) {
+        const receiver_piece *piece = p->pieces + i;
+        const float edge = p->spacing[piece->side] / (float)piece->finer;
+        if (piece->parts > 1 || !p->met[piece->side] || (i < p->cells.count && !p->looked_at[i]))
+            continue;
+        all += (double)(edge * edge);
+        if (piece->off > p->in->off_limits && finest_parts(p, piece) > 1) {
+            p->out->cells[i] = (vit_receiver_cell){.split = VIT_RECEIVER_BY_RAYS};
+            p->out->unknown++;
+            unknown += (double)(edge * edge);
+        }
+    }
+    p->out->unknown_share = all > 0.0 ? (float)(unknown / all) : 0.0f;
+}
+
+/* Cells are divided as often as they may be, or the next level's middles would be too far apart to tell; parts, where they are
+ * off by e, so that it becomes less than `step`: about e / 2 if places are half as far apart, at the edges of shadows too. */
+static uint32_t parts_by_light(const placing *p, const receiver_piece *piece, float step) {
+    const uint32_t most = finest_parts(p, piece);
+    uint32_t parts = 1;
+    while (2 * parts <= most && piece->off > (piece->finer == 1 ? step : step * (float)parts))
+        parts *= 2;
+    return parts;
+}
+
 /* finest: parts of parts along an edge of a cell, at most. */
 static uint32_t parts_for(const receiver_piece *piece, float contrast, float step, float finest) {
     uint32_t parts = 1;
@@ -37,12 +136,15 @@ static uint32_t parts_for(const receiver_piece *piece, float contrast, float ste
 
 /* The step by which they are not too many. */
 static float find_step(const placing *p, const float *contrast) {
-    const uint32_t records = p->out->count - p->out->follower_count,
-                   most = records * MORE > MORE_LEAST && p->begin == 0 ? records * MORE : MORE_LEAST;
-    for (float step = p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
+    const uint32_t records = p->out->count - p->out->follower_count, most = p->in->light ? p->in->most
+                                                                            : records * MORE > MORE_LEAST && p->begin == 0
+                                                                                ? records * MORE
+                                                                                : MORE_LEAST;
+    for (float step = p->in->light ? p->in->error : p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
         uint64_t nodes = 0;
         for (uint32_t i = 0; i < p->end - p->begin; i++) {
-            const uint32_t n = parts_for(p->pieces + p->begin + i, contrast[i], step, p->finest);
+            const receiver_piece *piece = p->pieces + p->begin + i;
+            const uint32_t n = p->in->light ? parts_by_light(p, piece, step) : parts_for(piece, contrast[i], step, p->finest);
             nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
         }
         if (nodes <= most)
@@ -128,19 +230,20 @@ static bool grade(placing *p) {
 
 bool receivers_find_parts(placing *p, const float *irradiance, const float *noise) {
     float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
-    double mean = 0.0;
     if (!contrast)
         return false;
-    for (size_t i = 0; i < (size_t)p->out->count * p->in->columns; i++)
-        mean += (double)irradiance[i] / p->out->count;
+    const double mean = mean_of(p, irradiance);
     if (p->begin == 0)
         receivers_part_records(p, irradiance, mean);
-    for (uint32_t i = p->begin; i < p->end; i++)
+    if (p->in->light)
+        judge_pieces(p, irradiance, mean);
+    for (uint32_t i = p->begin; i < p->end && !p->in->light; i++)
         if (may_be_divided(p, i))
             contrast[i - p->begin] = contrast_of(p, i, irradiance, noise, mean);
     const float step = find_step(p, contrast);
     for (uint32_t i = p->begin; i < p->end; i++)
-        p->pieces[i].parts = parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
+        p->pieces[i].parts = p->in->light ? parts_by_light(p, p->pieces + i, step)
+                                          : parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
     free(contrast);
     return grade(p) && add_parts(p);
 }

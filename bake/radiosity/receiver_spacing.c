@@ -7,6 +7,7 @@
 #define FRAMES_LOOKED_AT 48u /* of the path, at most */
 #define RAYS 6e6             /* from the cameras, over all of these; at most one a pixel */
 #define UNSEEN_APART 0.02f   /* of the scene's size: receivers of sides that no ray met, should they be seen after all */
+#define UNSEEN_BY_LIGHT 0.1f /* likewise, where the light of each is looked for by itself */
 #define MOST_REACH 8.0f      /* cells round one that a ray met that others may meet, each way */
 
 static float pixel_angle(const vit_camera *c) {
@@ -110,7 +111,7 @@ bool receivers_find_spacing(placing *p) {
         free(l.hit);
         return false;
     }
-    p->unseen = in->size * UNSEEN_APART;
+    p->unseen = in->size * (in->light ? UNSEEN_BY_LIGHT : UNSEEN_APART);
     for (uint32_t i = 0; i < sides; i++)
         p->spacing[i] = INFINITY;
     for (uint32_t f = 0; f < frames; f++) {

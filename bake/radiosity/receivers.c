@@ -336,6 +336,18 @@ static bool divide_pieces(placing *p, const float *irradiance, const float *nois
     return fine;
 }
 
+/* Light of all, and where it is not known. */
+static vit_status look_last(placing *p, vit_text *why) {
+    const receivers_input *in = p->in;
+    receivers *o = p->out;
+    o->irradiance = malloc(((size_t)o->count * in->columns + 1u) * sizeof *o->irradiance);
+    vit_status status = o->irradiance ? in->look(in->user, o, o->irradiance, NULL, why)
+                                      : bake_fail(why, VIT_FAILED, "receivers: out of memory");
+    if (status == VIT_OK)
+        receivers_find_unknown(p, o->irradiance);
+    return status;
+}
+
 /* Light at a first look says which, at another which of their parts. */
 static vit_status divide(placing *p, vit_text *why) {
     const receivers_input *in = p->in;
@@ -352,7 +364,7 @@ static vit_status divide(placing *p, vit_text *why) {
         free(irradiance);
         free(noise);
     }
-    return status;
+    return status == VIT_OK && in->light ? look_last(p, why) : status;
 }
 
 /* Dark sides have no cells of their own: any will do. */
@@ -371,7 +383,7 @@ static void drop_dark(placing *p) {
     memmove(o->cells + o->cell_count, o->cells + p->cells.count, parts * sizeof *o->cells);
     o->cell_count += parts;
     for (uint32_t i = 0; i < o->cell_count; i++)
-        if (VIT_RECEIVER_IS_DIVIDED(o->cells[i].split))
+        if (VIT_RECEIVER_IS_DIVIDED(o->cells[i].split) && o->cells[i].split != VIT_RECEIVER_BY_RAYS)
             o->cells[i].receiver[0] -= dropped;
 }
 
@@ -462,5 +474,6 @@ void receivers_free(receivers *r) {
     free(r->splits);
     free(r->receivers);
     free(r->followers);
+    free(r->irradiance);
     *r = (receivers){0};
 }

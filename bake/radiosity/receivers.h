@@ -29,6 +29,11 @@ typedef struct receivers_input {
     vit_status (*look)(void *user, const struct receivers *r, float *irradiance, float *noise, vit_text *why);
     void *user;
     uint32_t columns;
+    /* Light of any place, columns of it. Not NULL: what is divided is told by how far off interpolation is in a cell's middle
+     * rather than by how much the light of its corners differs; looks find the light of all, and the last one's is kept. */
+    void (*light)(void *user, uint32_t side, float b1, float b2, float *irradiance);
+    float error;      /* of that light: cells are divided until their middles are off by so much of it, about, */
+    float off_limits; /* and where they are still off by so much in the end no light is said to be known */
 } receivers_input;
 
 typedef struct receiver {
@@ -58,6 +63,9 @@ typedef struct receivers {
     uint32_t side_count, cell_count, split_count, count, follower_count;
     uint32_t seen_sides; /* of triangles, by the path's cameras */
     uint32_t lit_sides;  /* that light can reach, of matt materials */
+    float *irradiance;   /* receivers x columns, if receivers_input.light says it */
+    uint32_t unknown;    /* cells whose light is not known: VIT_RECEIVER_BY_RAYS; */
+    float unknown_share; /* of what the cameras see, about */
 } receivers;
 
 /* VIT_FAILED: out of memory. On failure there is nothing to free. */

@@ -19,6 +19,7 @@ typedef struct receiver_piece {
     uint32_t finer; /* so many along an edge of its cell: 1 for cells */
     uint32_t parts; /* of it, along each edge; 1 where it is not divided */
     uint32_t first; /* of its parts, a piece */
+    float off;      /* with receivers_input.light: by so much of its light interpolation is off in its middle */
 } receiver_piece;
 
 typedef struct placing {
@@ -56,6 +57,8 @@ bool receivers_find_looked_at(placing *p);
 bool receivers_start_pieces(placing *p);
 /* Parts of pieces from `begin` to `end`, behind all others. irradiance, noise: of all receivers. */
 bool receivers_find_parts(placing *p, const float *irradiance, const float *noise);
+/* Pieces that should have been divided more, whose middles are too far off: their light is not known. */
+void receivers_find_unknown(placing *p, const float *irradiance);
 /* receiver_records.c: `followers` of the cells' receivers, of those that lie near records. */
 bool receivers_find_records(placing *p);
 /* Those whose records' light differs are records, too; mean: of the light of all, columns added up. */

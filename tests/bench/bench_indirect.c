@@ -32,10 +32,12 @@ static void put_row(const trial *t, const method *m, const char *what, double va
 }
 
 static void print_verdict(const trial *t, const method *m, int part) {
-    static const char *const kinds[TRUTH_PARTS] = {"all", "as", "sum"}, *const of[TRUTH_PARTS] = {
-                                                                            "indirect light",
-                                                                            "indirect light, as many reflections", "all light"};
-    const verdict v = truth_compare(&t->truth, part, part == PICTURE ? m->picture : m->light);
+    static const char *const kinds[TRUTH_PARTS] = {"all", "as", "sum", "dir"}, *const of[TRUTH_PARTS] = {
+                                                                                   "indirect light",
+                                                                                   "indirect light, as many reflections",
+                                                                                   "all light", "direct light"};
+    const float *const light[TRUTH_PARTS] = {m->light, m->light, m->picture, m->direct};
+    const verdict v = truth_compare(&t->truth, part, light[part]);
     const struct {
         const char *what;
         double value;
@@ -65,16 +67,18 @@ static void print_method(const trial *t, const method *m) {
 }
 
 /* Above: light at one exposure, the reference first. Below: differences over the mean, 0 as grey, the first all grey. */
-static void write_pictures(const trial *t) {
-    FILE *f = untuned_create(t->scene->name, ".ppm");
-    const truth_part *p = &t->truth.part[ALL];
+static void write_pictures(const trial *t, int part, const char *ending) {
+    FILE *f = untuned_create(t->scene->name, ending);
+    const truth_part *p = &t->truth.part[part];
     const size_t w = t->truth.r.width, h = t->truth.r.height;
     fprintf(f, "P6\n%zu %zu\n255\n", w * (t->count + 1), 2 * h);
     for (size_t y = 0; y < 2 * h; y++)
         for (size_t x = 0; x < w * (t->count + 1); x++)
             for (size_t k = 0; k < 3; k++) {
                 const size_t at = 3 * (y % h * w + x % w) + k;
-                const double right = p->light[at], got = x < w ? right : (double)t->methods[x / w - 1].light[at];
+                const double right = p->light[at], got = x < w ? right
+                                                               : (double)(part == DIRECT ? t->methods[x / w - 1].direct
+                                                                                         : t->methods[x / w - 1].light)[at];
                 const double off = fmin(fmax((got - right) / p->mean, -1), 1);
                 fputc(y < h ? truth_shade(0.25 * got / p->mean) : (int)(127.5 + 127.5 * off), f);
             }
@@ -119,16 +123,19 @@ static void run(trial *t) {
         m->every_pixel = method_play(&image, VIT_VIEW_indirect, frame, &all);
         m->light = method_play(&image, VIT_VIEW_indirect, frame, &grid);
         m->picture = method_play(&image, VIT_VIEW_final, frame, &grid);
+        m->direct = method_play(&image, VIT_VIEW_direct, frame, &grid);
     }
     trace(t, &image, frame, TRUTH_NOISE, &t->truth);
     for (size_t i = 0; i < t->count; i++) {
         print_method(t, t->methods + i);
         write_every_pixel(t, t->methods + i, &all);
     }
-    write_pictures(t);
+    write_pictures(t, ALL, ".ppm");
+    write_pictures(t, DIRECT, "-direct.ppm");
     for (size_t i = 0; i < t->count; i++) {
         free(t->methods[i].light);
         free(t->methods[i].picture);
+        free(t->methods[i].direct);
         free(t->methods[i].every_pixel);
     }
     truth_free(&t->truth);

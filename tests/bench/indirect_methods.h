@@ -11,10 +11,11 @@
 enum { METHODS_MOST = 8, METHOD_OPTIONS = 15 };
 
 typedef struct method {
-    const char *name;                     /* as METHODS has it */
-    double cpu;                           /* seconds of the bake */
-    size_t bytes;                         /* of the pack */
-    float *light, *picture, *every_pixel; /* indirect, all light on the reference's grid; indirect */
+    const char *name;                /* as METHODS has it */
+    double cpu;                      /* seconds of the bake */
+    size_t bytes;                    /* of the pack */
+    float *light, *picture, *direct; /* indirect, all, direct light on the reference's grid */
+    float *every_pixel;              /* indirect */
 } method;
 
 static inline double children_seconds(void) {

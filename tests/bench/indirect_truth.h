@@ -12,8 +12,8 @@
     4u /* of light with an end: the default of `bounces`; another number would be another cached reference                     \
         */
 
-/* Indirect light of all reflections; of as many as photons make by default; the whole picture. */
-enum { ALL, LIMITED, PICTURE, TRUTH_PARTS };
+/* Indirect light of all reflections; of as many as photons make by default; the whole picture; direct light. */
+enum { ALL, LIMITED, PICTURE, DIRECT, TRUTH_PARTS };
 
 typedef struct truth_part {
     const double *light, *variance;
@@ -68,6 +68,7 @@ static inline void truth_finish(truth *t) {
     t->part[ALL] = truth_part_of(t->r.unlimited, t->r.unlimited_variance, values);
     t->part[LIMITED] = truth_part_of(t->r.limited, t->r.limited_variance, values);
     t->part[PICTURE] = truth_part_of(t->sum, t->sum_variance, values);
+    t->part[DIRECT] = truth_part_of(t->r.direct, t->r.direct_variance, values);
     for (int k = 0; k < TRUTH_PARTS; k++)
         truth_look_around(&t->r, &t->part[k]);
 }

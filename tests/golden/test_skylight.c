@@ -46,37 +46,66 @@ static double right(double px) {
     return albedo * (1 + ground / sqrt(ground * ground + step * step)) / 2;
 }
 
-/* Worst relative error over pixels that lie `clear` pixels away from edges, or on edges and all, and the mean square one. */
-static void check(void **state, const char *quality, double most, double most_nmse) {
+/* Of 16 classes of pixels, by their places in 4 x 4, mean relative errors: how far these are apart. */
+typedef struct classes {
+    double sum[16], count[16];
+} classes;
+
+static double pattern_of(const classes *c) {
+    double least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < 16; i++) {
+        least = fmin(least, c->sum[i] / c->count[i]);
+        most = fmax(most, c->sum[i] / c->count[i]);
+    }
+    return most - least;
+}
+
+/* Worst relative error over pixels that lie `clear` pixels away from edges, or on edges and all, the mean square one, and how
+ * much of a pattern of 4 x 4 pixels there is. */
+static void check(void **state, const char *quality, double most, double most_nmse, double most_pattern) {
     static float pixels[WIDTH * HEIGHT * 4];
     write_scene(*state, quality);
     scene_lab_bake(*state, "scene.cfg", "");
     scene_lab_play(*state, "direct", pixels, WIDTH * HEIGHT * 4);
     double worst = 0, squares = 0, sum = 0;
+    classes pattern = {{0}, {0}};
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const double value = right(x + 0.5), got = (double)pixels[(y * WIDTH + x) * 4];
             const bool edge = fabs(right(x) - right(x + 1)) > 0.03; /* a pixel is its centre, or its mean with samples */
             worst = fabs(got / value - 1) > worst && !edge ? fabs(got / value - 1) : worst;
+            pattern.sum[y % 4 * 4 + x % 4] += edge ? 0 : got / value - 1;
+            pattern.count[y % 4 * 4 + x % 4] += edge ? 0 : 1;
             squares += edge ? 0 : (got / value - 1) * (got / value - 1);
             sum += edge ? 0 : 1;
         }
-    print_message("worst pixel %.4f, NMSE %.6f\n", worst, squares / sum);
+    print_message("worst pixel %.4f, NMSE %.6f, pattern %.5f\n", worst, squares / sum, pattern_of(&pattern));
     assert_true(sum > 0.9 * WIDTH * HEIGHT);
     assert_true(worst < most);
     assert_true(squares / sum < most_nmse);
+    assert_true(pattern_of(&pattern) < most_pattern);
 }
 
+#define BY_RAYS "lightmap = \"rays\"; "
+
 static void no_pattern_of_directions_shows_and_no_light_crosses_an_edge(void **state) {
-    check(state, "", 0.1, 1e-3);
+    check(state, BY_RAYS, 0.1, 1e-3, 0.02);
 }
 
 static void so_it_is_with_several_samples_a_pixel(void **state) {
-    check(state, "antialias = 4;", 0.15, 1e-3);
+    check(state, BY_RAYS "antialias = 4;", 0.15, 1e-3, 0.02);
 }
 
 static void so_it_is_with_few_directions(void **state) {
-    check(state, "sky_samples = 4;", 0.2, 4e-3);
+    check(state, BY_RAYS "sky_samples = 4;", 0.2, 4e-3, 0.02);
+}
+
+static void baked_it_is_closer_still(void **state) {
+    check(state, "lightmap = \"baked\";", 0.05, 1e-4, 0.002);
+}
+
+static void so_it_is_baked_with_several_samples_a_pixel(void **state) {
+    check(state, "lightmap = \"baked\"; antialias = 4;", 0.05, 1e-4, 0.002);
 }
 
 int main(void) {
@@ -84,6 +113,8 @@ int main(void) {
         cmocka_unit_test(no_pattern_of_directions_shows_and_no_light_crosses_an_edge),
         cmocka_unit_test(so_it_is_with_several_samples_a_pixel),
         cmocka_unit_test(so_it_is_with_few_directions),
+        cmocka_unit_test(baked_it_is_closer_still),
+        cmocka_unit_test(so_it_is_baked_with_several_samples_a_pixel),
     };
     return cmocka_run_group_tests(tests, scene_lab_set_up, scene_lab_tear_down);
 }

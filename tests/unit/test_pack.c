@@ -1,13 +1,14 @@
-/* The pack: writer and loader together, on three valid packs, which have every section between them, and on plain damage (cut
- * files, flipped bits), which must always be refused. Damage behind right hashes is test_pack_forged.c's,
- * test_pack_forged_basis.c's, test_pack_forged_live.c's and test_pack_forged_cache.c's. */
+/* The pack: writer and loader together, on valid packs of each kind, which have every section between them, and on plain damage
+ * (cut files, flipped bits), which must always be refused. Damage behind right hashes is test_pack_forged.c's,
+ * test_pack_forged_basis.c's, test_pack_forged_live.c's, test_pack_forged_lightmap.c's and test_pack_forged_cache.c's. */
 #include "pack_image.h"
 
 #include <float.h>
+#include <stdbool.h>
 
 /* XXH3-64 of the fixtures' packs in format version 10. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
  * and put the new hashes here. */
-static const uint64_t golden_hashes[FIXTURE_KINDS] = {0x121bca5bcf8eb451u, 0xd3efa12383ed46eau, 0x576d9c1dddecd0dfu};
+static const uint64_t golden_hashes[FIXTURE_KINDS] = {0x511c8fa39acc7eedu, 0x659dcb1470690ae5u, 0xc8ca9b145cda70c9u, 0xdb504bbf55420666u};
 
 #define EACH_KIND(kind) for (fixture_kind kind = 0; kind < FIXTURE_KINDS; kind++)
 
@@ -31,12 +32,15 @@ static void a_valid_pack_is_accepted_and_its_sections_are_found_in_place(void **
 
 static void the_fixtures_have_every_section_between_them(void **state) {
     (void)state;
-    image photons = valid_image_of(FIXTURE_PHOTONS), basis = valid_image_of(FIXTURE_BASIS), live = valid_image_of(FIXTURE_LIVE);
+    bool there[VIT_SECTION_COUNT] = {false};
+    EACH_KIND(kind) {
+        image im = valid_image_of(kind);
+        for (int i = 0; i < VIT_SECTION_COUNT; i++)
+            there[i] = there[i] || im.table[i].size > 0;
+        free(im.bytes);
+    }
     for (int i = 0; i < VIT_SECTION_COUNT; i++)
-        assert_true(photons.table[i].size > 0 || basis.table[i].size > 0 || live.table[i].size > 0);
-    free(photons.bytes);
-    free(basis.bytes);
-    free(live.bytes);
+        assert_true(there[i]);
 }
 
 static void the_bytes_that_were_written_are_the_bytes_that_are_read(void **state) {

@@ -227,11 +227,18 @@ static void follow_cells(const vit_pack *p, uint32_t triangle) {
     }
 }
 
-static void follow_receivers(const vit_pack *p, const vit_u32 receiver[3]) {
-    const vit_receiver *receivers = p->section[VIT_SECTION_RECV];
+/* Baked places: of indirect light, or of the lightmap. */
+typedef struct places {
+    const vit_receiver_cell *cells;
+    const vit_receiver_split *splits;
+    const vit_receiver *receivers;
+    vit_u32 cell_count, split_count, receiver_count;
+} places;
+
+static void follow_receivers(const places *p, const vit_u32 receiver[3]) {
     for (int k = 0; k < 3; k++) {
-        FUZZ_HOLDS(receiver[k] < p->scene->receivers);
-        sum += receivers[receiver[k]].irradiance[0] > 1.0f;
+        FUZZ_HOLDS(receiver[k] < p->receiver_count);
+        sum += p->receivers[receiver[k]].irradiance[0] > 1.0f;
     }
 }
 
@@ -239,7 +246,7 @@ static void follow_receivers(const vit_pack *p, const vit_u32 receiver[3]) {
 static int divided(const vit_receiver_cell *cells, vit_u32 cell) {
     const vit_u32 parts = cells[cell].split & ~VIT_RECEIVER_DIVIDED, first = cells[cell].receiver[0];
     int most = 0;
-    if (!VIT_RECEIVER_IS_DIVIDED(cells[cell].split))
+    if (!VIT_RECEIVER_IS_DIVIDED(cells[cell].split) || parts == 0)
         return 0;
     FUZZ_HOLDS(first > cell);
     for (vit_u32 k = first; k < first + parts * parts; k++) {
@@ -249,20 +256,41 @@ static int divided(const vit_receiver_cell *cells, vit_u32 cell) {
     return most + 1;
 }
 
-static void follow_receiver_cells(const vit_pack *p) {
-    const vit_receiver_cell *cells = p->section[VIT_SECTION_RCEL];
-    const vit_receiver_split *splits = p->section[VIT_SECTION_RSPL];
-    for (vit_u32 i = 0; i < p->scene->receiver_cells; i++) {
-        if (VIT_RECEIVER_IS_DIVIDED(cells[i].split)) {
-            const vit_u32 parts = cells[i].split & ~VIT_RECEIVER_DIVIDED, end = cells[i].receiver[0] + parts * parts;
-            FUZZ_HOLDS(parts >= 1 && parts <= VIT_RECEIVER_PARTS && end <= p->scene->receiver_cells);
-            FUZZ_HOLDS(divided(cells, i) <= VIT_RECEIVER_LEVELS);
+static void follow_receiver_cells(const places *p, bool by_rays) {
+    for (vit_u32 i = 0; i < p->cell_count; i++) {
+        const vit_receiver_cell *c = p->cells + i;
+        if (by_rays && c->split == VIT_RECEIVER_BY_RAYS)
+            continue;
+        if (VIT_RECEIVER_IS_DIVIDED(c->split)) {
+            const vit_u32 parts = c->split & ~VIT_RECEIVER_DIVIDED, end = c->receiver[0] + parts * parts;
+            FUZZ_HOLDS(parts >= 1 && parts <= VIT_RECEIVER_PARTS && end <= p->cell_count);
+            FUZZ_HOLDS(divided(p->cells, i) <= VIT_RECEIVER_LEVELS);
             continue;
         }
-        follow_receivers(p, cells[i].receiver);
-        FUZZ_HOLDS(cells[i].split == VIT_NONE || cells[i].split < p->scene->receiver_splits);
-        if (cells[i].split != VIT_NONE)
-            follow_receivers(p, splits[cells[i].split].receiver);
+        follow_receivers(p, c->receiver);
+        FUZZ_HOLDS(c->split == VIT_NONE || c->split < p->split_count);
+        if (c->split != VIT_NONE)
+            follow_receivers(p, p->splits[c->split].receiver);
+    }
+}
+
+static void follow_places(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const places indirect = {p->section[VIT_SECTION_RCEL], p->section[VIT_SECTION_RSPL],
+                             p->section[VIT_SECTION_RECV], s->receiver_cells,
+                             s->receiver_splits,           s->receivers},
+                 lightmap = {p->section[VIT_SECTION_MCEL],
+                             p->section[VIT_SECTION_MSPL],
+                             p->section[VIT_SECTION_MREC],
+                             s->map_cells,
+                             s->map_splits,
+                             s->map_receivers};
+    const vit_u32 *sides = p->section[VIT_SECTION_MSID];
+    follow_receiver_cells(&indirect, false);
+    follow_receiver_cells(&lightmap, s->effects & VIT_BIT(LIGHTMAP_RAYS));
+    for (vit_u32 i = 0; s->map_cells && i < 2 * s->triangles; i++) {
+        const vit_u32 n = sides[i] >> VIT_SIDE_PARTS_SHIFT;
+        FUZZ_HOLDS(n >= 1 && (sides[i] & VIT_SIDE_CELL) + n * n <= s->map_cells);
     }
 }
 
@@ -398,7 +426,7 @@ static void read_pack(const unsigned char *bytes, size_t size) {
         return;
     }
     FUZZ_HOLDS(follow_tree(&pack) == pack.scene->triangles);
-    follow_receiver_cells(&pack);
+    follow_places(&pack);
     follow_basis(&pack);
     follow_cache(&pack);
     follow_patches(&pack);
