@@ -1,9 +1,117 @@
-/* The pass ambient_light: ambient light that surfaces keep from each other. METHODS.md, "World-space cache". */
+/* The passes cache_sample, cache_merge and ambient_light: ambient light that surfaces keep from each other. METHODS.md,
+ * "World-space cache". The first two only where the cache is filled while playing: then words of `counts` are rays of a point
+ * in all frames (low half) and how many of these were open, `frame_counts` two words a point, of the frame's own. */
+
+#if VIT_WITH(LIVE_CACHE)
+#define CACHE_HALF 16 /* bits of a count; both are halved until they fit */
+
+/* Record times VIT_CACHE_POINTS plus point that the lanes' samples count for; -1: none. */
+static inline li cache_target(global const vit_scene *scene, global const uint *cells, lv3 p, lv3 n, lf distance, li lanes,
+                              lu random) {
+    uint seeds[CACHE_NEAR * VIT_LANES], tags[CACHE_NEAR * VIT_LANES];
+    int of_cell[3 * VIT_LANES], of_q[3 * VIT_LANES];
+    lf next, u = l_unit_float(l_pcg(random + 1u));
+    li level = cache_level(scene, distance, &next);
+    level -= L_LT(l_unit_float(l_pcg(random)), next);
+    cache_place place = cache_place_of(p, L_F(vit_div(1.0f, scene->cache_step)) * L_AS_FLOAT((127 - level) << 23));
+    cache_seeds((place.x - 1) >> 1, (place.y - 1) >> 1, (place.z - 1) >> 1, L_AS_UINT(level), seeds, tags);
+    /* 1. The side, by shares. */
+    lf share[3] = {cache_share(n.x), cache_share(n.y), cache_share(n.z)};
+    u *= share[0] + share[1] + share[2];
+    li y = L_GE(u, share[0]), z = L_GE(u, share[0] + share[1]) & y;
+    li side = -2 * y - 2 * z - L_LT(l_sel(z, n.z, l_sel(y, n.y, n.x)), L_F(0));
+    /* 2. The point, by distances. */
+    cache_nearest near = cache_nearest_of(&place, seeds);
+    for (int i = 0; i < 3; i++) {
+        L_STORE(near.cell[i], of_cell + i * VIT_LANES);
+        L_STORE(near.q[i], of_q + i * VIT_LANES);
+    }
+    li chosen = cache_choose(&near, l_unit_float(l_pcg(random + 2u))) * VIT_LANES + L_INDEX;
+    li cell = L_GATHER(li, of_cell, chosen) * VIT_LANES + L_INDEX;
+    li record = cache_find(cells, scene->cache_cells, scene->cache_probes, lanes,
+                           cache_key(L_GATHER(lu, seeds, cell), L_AS_UINT(side)), L_GATHER(lu, tags, cell));
+    return l_sel_i(lanes & L_GE(record, L_I(0)), record * (int)VIT_CACHE_POINTS + L_GATHER(li, of_q, chosen), L_I(-1));
+}
+
+/* Lanes whose point is not known well enough: its value's variance, of one more open and one more closed ray than there were,
+ * is above that of cache_error. */
+static inline li cache_wants(global const vit_scene *scene, global const uint *counts, li target) {
+    lu word = l_gather_u(counts, target & L_GE(target, L_I(0)));
+    lf rays = L_FROM_INT(L_AS_INT(word & 0xffffu)), open = L_FROM_INT(L_AS_INT(word >> CACHE_HALF)), all = rays + 2.0f;
+    lf bound = all * all * (all + 1.0f) * (scene->cache_error * scene->cache_error);
+    return L_GT((open + 1.0f) * (rays - open + 1.0f), bound) & L_GE(target, L_I(0));
+}
+
+/* One ray a sample, for one of the points near it. */
+kernel void cache_sample(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *position,
+                         global const uint *normal, global const uint *cells, global const uint *counts,
+                         volatile global uint *frame_counts WORK_PARAMETERS) {
+    uint first = (uint)get_global_id(0) * VIT_LANES;
+    if (first >= scene->samples || round_skips(first, active))
+        return;
+    li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
+    if (!l_any(hit))
+        return;
+    WORK_BEGIN
+    lv3 p = sample_position(scene, position, first), n = l_decode_normal(L_LOAD(normal + first)),
+        way = lv3_sub(p, lv3_load((cameras + frame)->eye));
+    lu random = l_pcg(L_AS_UINT((int)first + L_INDEX) + l_pcg(L_U(frame)));
+    li target = cache_target(scene, cells, p, n, l_sqrt(lv3_dot(way, way)), hit, random);
+    li wants = cache_wants(scene, counts, target);
+    if (l_any(wants)) {
+        lv3 d = ray_cosine(n, l_unit_float(l_pcg(random + 3u)), l_unit_float(l_pcg(random + 4u)));
+        li open = wants;
+        if (VIT_EFFECT_SMOOTH)
+            open &= L_GT(lv3_dot(lit_face(triangles, hit, triangle, p), d), L_F(0));
+        ray_packet r = ray_make(p, d);
+        WORK_LANES(shadow_rays, open);
+        open &= ~ray_occluded(RAY_SCENE, &r, open, L_F(scene->ambient_radius));
+        WORK_TRACED(r);
+        int at[VIT_LANES], is_open[VIT_LANES];
+        L_STORE(l_sel_i(wants, target, L_I(-1)), at);
+        L_STORE(open, is_open);
+        for (int i = 0; i < VIT_LANES; i++)
+            if (at[i] >= 0) {
+                atomic_add(frame_counts + 2 * (uint)at[i], 1u);
+                if (is_open[i])
+                    atomic_add(frame_counts + 2 * (uint)at[i] + 1u, 1u);
+            }
+    }
+    WORK_END
+}
+
+/* Adds the frame's rays to all frames', and makes records of what is known of points then. A point gets at most 2^26 rays a
+ * frame, one of each sample, on top of 2^16: 32 bits hold them. */
+kernel void cache_merge(global const vit_scene *scene, global const uint *cells, global uint *frame_counts, global uint *counts,
+                        global uint *live) {
+    uint record = (uint)get_global_id(0);
+    if (record >= scene->cache_cells)
+        return;
+    uint word[3] = {0, 0, cells[record * 4 + 3] & VIT_CACHE_TAG};
+    for (uint q = 0; q < VIT_CACHE_POINTS; q++) {
+        uint point = record * VIT_CACHE_POINTS + q, before = counts[point];
+        uint rays = (before & 0xffffu) + frame_counts[2 * point], open = (before >> CACHE_HALF) + frame_counts[2 * point + 1];
+        while (rays >> CACHE_HALF) { /* both are halved: the mean stays what it is, but for less than one ray of 2^15 */
+            rays >>= 1;
+            open >>= 1;
+        }
+        counts[point] = rays | open << CACHE_HALF;
+        frame_counts[2 * point] = frame_counts[2 * point + 1] = 0;
+        if (rays > 0)
+            word[VIT_CACHE_WORD(q)] |= ((open * (uint)VIT_CACHE_STEPS + rays / 2u) / rays + VIT_CACHE_ZERO)
+                                       << VIT_CACHE_SHIFT(q);
+    }
+    live[record * 4] = cells[record * 4];
+    for (uint k = 0; k < 3; k++)
+        live[record * 4 + 1 + k] = word[k];
+}
+#endif
 
 #if VIT_WITH(OCCLUSION)
 kernel void ambient_light(global const vit_scene *scene, ROUND_PARAMETERS, global const uint *hit_triangle,
                           global const float *position, global const uint *normal, global const uint *albedo,
-                          global const uint *specular, global const uint *cells, global float *direct WORK_PARAMETERS) {
+                          global const uint *specular, global const uint *cells, global const uint *live,
+                          global float *direct WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -12,7 +120,8 @@ kernel void ambient_light(global const vit_scene *scene, ROUND_PARAMETERS, globa
         return;
     WORK_BEGIN
     lv3 p = sample_position(scene, position, first), way = lv3_sub(p, lv3_load((cameras + frame)->eye));
-    lf open = cache_open(scene, cells, p, l_decode_normal(L_LOAD(normal + first)), l_sqrt(lv3_dot(way, way)), hit WORK_PASS);
+    lf open = cache_open(scene, VIT_EFFECT_LIVE_CACHE ? live : cells, p, l_decode_normal(L_LOAD(normal + first)),
+                         l_sqrt(lv3_dot(way, way)), hit WORK_PASS);
     open = l_sel(hit, open, L_F(0));
     lv3 all = l_decode_albedo(L_LOAD(albedo + first)), out = lv3_load_planes(direct, n, first);
     if (VIT_EFFECT_SPECULAR)

@@ -2,6 +2,7 @@
 #include "byte_order.h"
 #include "fail.h"
 #include "vit.h"
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -42,14 +43,44 @@ static vit_status walk_round(vit *v, uint32_t frame, uint32_t round, after_fn *a
     return VIT_OK;
 }
 
-static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
+/* The cache's share of a frame that is not shown. */
+static vit_status replay(vit *v, uint32_t frame, uint64_t rows, vit_text *why) {
+    for (uint32_t row = 0; row < vit_pass_count; row++) {
+        const vit_status status = rows >> row & 1 ? run_step(v, &(vit_step){row, 0, frame, 0}, NULL, NULL, why) : VIT_OK;
+        if (status != VIT_OK)
+            return status;
+    }
+    return VIT_OK;
+}
+
+/* A frame has what all frames before it left, and nothing else, whatever was played before: where that is not at hand, their
+ * passes of the cache run again. */
+static vit_status bring_history(vit *v, uint32_t frame, vit_text *why) {
+    static const vit_buffer buffers[] = {B_cache_frame, B_cache_counts, B_cache_live};
     vit_status status = VIT_OK;
-    if (v->launch.effects & ON_WORK) /* counted from nothing each frame */
+    const bool there = v->history == frame;
+    v->history = VIT_NONE; /* until the frame is done */
+    if (there)
+        return VIT_OK;
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers && status == VIT_OK; i++)
+        status = v->device->clear(v->state, buffers[i], why);
+    const uint64_t rows = vit_passes_of_history(&v->launch);
+    for (uint32_t f = 0; f < frame && status == VIT_OK; f++)
+        status = replay(v, f, rows, why);
+    return status;
+}
+
+static vit_status walk(vit *v, uint32_t frame, after_fn *after, void *user, vit_text *why) {
+    const bool live = v->launch.effects & ON(LIVE_CACHE);
+    vit_status status = live ? bring_history(v, frame, why) : VIT_OK;
+    if (status == VIT_OK && (v->launch.effects & ON_WORK)) /* counted from nothing each frame */
         status = v->device->clear(v->state, B_work, why);
     if (status == VIT_OK && (v->launch.effects & ON_REACH))
         status = v->device->clear(v->state, B_reached, why);
     for (uint32_t round = 0; round < v->launch.rounds && status == VIT_OK; round++)
         status = walk_round(v, frame, round, after, user, why);
+    if (status == VIT_OK && live)
+        v->history = frame + 1;
     return status;
 }
 

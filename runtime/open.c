@@ -174,6 +174,7 @@ static vit *take_arena(const vit_open_info *info, const vit_pack *pack, const vi
     v->device = device;
     v->state = (char *)info->arena + round_up(sizeof *v);
     v->profile = info->profile != 0;
+    v->history = VIT_NONE;
     *setup = (vit_device_setup){info, &v->pack, &v->launch, v->state, swapped + swapped_bytes(pack)};
     return v;
 }

@@ -30,7 +30,8 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 
 static vit_status check_floats(const vit_scene *s, vit_text *why) {
     const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
-    const bool small = s->effects & VIT_BIT(SMALL_SAMPLES), open = s->effects & VIT_BIT(OCCLUSION);
+    const bool small = s->effects & VIT_BIT(SMALL_SAMPLES), open = s->effects & VIT_BIT(OCCLUSION),
+               live = s->effects & VIT_BIT(LIVE_CACHE);
     const struct {
         const char *name;
         float value, least, most;
@@ -51,6 +52,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"ambient_radius", s->ambient_radius, open ? least : 0.0f, open ? FLT_MAX : 0.0f},
         {"cache_step", s->cache_step, open ? least : 0.0f, open ? FLT_MAX : 0.0f},
         {"cache_detail", s->cache_detail, 0.0f, open ? FLT_MAX : 0.0f},
+        {"cache_error", s->cache_error, live ? least : 0.0f, live ? 1.0f : 0.0f},
         {"ambient red", s->ambient[0], 0.0f, VIT_MAX_RADIANCE},
         {"ambient green", s->ambient[1], 0.0f, VIT_MAX_RADIANCE},
         {"ambient blue", s->ambient[2], 0.0f, VIT_MAX_RADIANCE},
@@ -65,9 +67,8 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return s->pad == 0 && s->map_pad == 0 && s->cache_pad[0] == 0 && s->cache_pad[1] == 0
-               ? VIT_OK
-               : vit_pack_refuse(why, "section META: padding is not 0");
+    return s->pad == 0 && s->map_pad == 0 && s->cache_pad == 0 ? VIT_OK
+                                                               : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */

@@ -132,6 +132,23 @@ uint32_t vit_pass_rounds(const vit_pass *p, const vit_launch *l) {
     return p->rounds == EACH ? l->rounds : p->rounds != SECOND_COPY || l->rounds > l->layers;
 }
 
+static uint64_t written(uint32_t buffer) {
+    return buffer >= B_FIRST_WRITTEN && buffer < B_COUNT ? (uint64_t)1 << (buffer - B_FIRST_WRITTEN) : 0;
+}
+
+uint64_t vit_passes_of_history(const vit_launch *l) {
+    uint64_t rows = 0, buffers = written(B_cache_counts);
+    for (uint32_t p = vit_pass_count; p-- > 0;) {
+        const vit_pass *pass = &vit_passes[p];
+        if (!vit_pass_called(p, l) || !vit_pass_in_round(pass, l, 0) || !(pass->writes & buffers))
+            continue;
+        rows |= (uint64_t)1 << p;
+        for (int i = 0; pass->args[i] != V_END; i++)
+            buffers |= written(pass->args[i]);
+    }
+    return rows;
+}
+
 static uint32_t level_words(const vit_scene *s, uint32_t level) {
     return (level + 1 < s->levels ? s->level_first[level + 1] : s->mask_words) - s->level_first[level];
 }
@@ -195,6 +212,9 @@ void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, u
         break;
     case PER_ROW:
         n = VIT_PATCH_STRIDE(s) / l->lanes;
+        break;
+    case PER_CACHE_CELL:
+        n = s->cache_cells;
         break;
     case PER_MASK_WORD:
         n = s->mask_words > VIT_COUNTER_COUNT ? s->mask_words : VIT_COUNTER_COUNT;

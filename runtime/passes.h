@@ -87,6 +87,9 @@ typedef struct vit_launch {
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
+    X(cache_live, ON(LIVE_CACHE), NONE, s->cache_cells * sizeof(vit_cache_cell))                                               \
+    X(cache_counts, ON(LIVE_CACHE), NONE, (uint64_t)s->cache_cells *VIT_CACHE_POINTS * 4)                                      \
+    X(cache_frame, ON(LIVE_CACHE), NONE, (uint64_t)s->cache_cells *VIT_CACHE_POINTS * 8)                                       \
     X(specular, ON(SPECULAR), NONE, (uint64_t)s->samples * 8)                                                                  \
     X(skylight, ON_SKY_RAYS, NONE, (uint64_t)s->samples *(l->effects & ON(SPECULAR) ? 24 : 12))                                \
     X(by_rays, ON(LIGHTMAP_RAYS), NONE, (uint64_t)s->samples * 4)                                                              \
@@ -161,15 +164,16 @@ typedef enum vit_extent {
     PER_RUN,    /* ceil(samples / run) */
     PER_PATH,   /* paths / lanes */
     PER_PHOTON,
-    PER_RELIT,    /* receivers / (2 * lanes) */
-    PER_RECEIVER, /* receivers */
-    PER_POINT,    /* patch_points / lanes */
-    PER_PATCH,    /* VIT_PATCH_STRIDE */
-    PER_COLUMN,   /* VIT_PATCH_STRIDE + patch_points */
-    PER_RANK,     /* transfer_rank / lanes, of each chunk of columns */
-    PER_MIX,      /* 3 * transfer_rank / lanes */
-    PER_SUM,      /* VIT_PATCH_STRIDE / lanes, of each of transfer_sums */
-    PER_ROW,      /* VIT_PATCH_STRIDE / lanes */
+    PER_RELIT,      /* receivers / (2 * lanes) */
+    PER_RECEIVER,   /* receivers */
+    PER_POINT,      /* patch_points / lanes */
+    PER_PATCH,      /* VIT_PATCH_STRIDE */
+    PER_COLUMN,     /* VIT_PATCH_STRIDE + patch_points */
+    PER_RANK,       /* transfer_rank / lanes, of each chunk of columns */
+    PER_MIX,        /* 3 * transfer_rank / lanes */
+    PER_SUM,        /* VIT_PATCH_STRIDE / lanes, of each of transfer_sums */
+    PER_ROW,        /* VIT_PATCH_STRIDE / lanes */
+    PER_CACHE_CELL, /* cache_cells */
     PER_MASK_WORD,
     PER_LEVEL_NODE, /* nodes of the level, at most */
     PER_PIXEL,
@@ -234,6 +238,10 @@ size_t vit_row_bytes(const vit_scene *s, const vit_launch *l);
 size_t vit_pitch_bytes(const vit_launch *l);
 /* Light that the view shows: VIT_SHOWS_DIRECT, VIT_SHOWS_INDIRECT. */
 int vit_view_light(vit_view view);
+
+/* Rows, as bits, whose results later frames find in buffers of the effect live-cache: what fills them, and what that reads, in
+ * the first round. */
+uint64_t vit_passes_of_history(const vit_launch *l);
 
 /* Work-items a work-group, and in all, of a pass at a level. */
 void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level, size_t *local, size_t *global);

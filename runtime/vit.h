@@ -17,6 +17,7 @@ struct vit {
     const vit_device *device;
     void *state; /* the device's */
     int profile;
+    uint32_t history; /* effect live-cache: the frame that comes after those in its buffers; VIT_NONE: nobody knows */
     uint64_t frames; /* rendered since vit_open */
     double pass_ms[VIT_MAX_PASSES];
     vit_host_fault faults[VIT_HOST_FAULTS]; /* a ring */

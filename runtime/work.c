@@ -26,6 +26,8 @@
           z->samples)                                                                                                          \
     X(sky_filter, (z->position + 4 + 4 + z->specular / 2 + z->skylight + 12 + 12) * z->samples)                                \
     X(ambient_light, (4 + z->position + 4 + 4 + z->specular / 2 + 12 + 12) * z->samples + 4 * w[VIT_WORK_evaluations])         \
+    X(cache_sample, (4 + z->position + 4 + z->face) * z->samples + (12 + 8) * w[VIT_WORK_shadow_rays])                         \
+    X(cache_merge, (2 * 16 + 8 * (2 * 8 + 2 * 4)) * z->cached)                                                                 \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                  \
     X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                 \
@@ -84,6 +86,7 @@ typedef struct sizes {
     uint64_t received, indirect; /* bytes: of side, cell and receivers that a hit looks up, per sample of the light written */
     uint64_t mapped, by_rays;    /* bytes: likewise of the lightmap, and per sample whether rays find its light */
     uint64_t relit;              /* bytes: of all receivers, read and written, and of what is read of a frame's lights */
+    uint64_t cached;             /* records of the cache */
     uint64_t points, patches, stride, receivers;        /* numbers of records */
     uint64_t right, mix, coded, projected, mixed, sums; /* bytes: of the transfer matrix's parts, and of what is between */
     uint64_t zones, baked,
@@ -167,6 +170,7 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.corner = l->effects & ON(RAW_BUCKETS) ? 0 : BOX_BYTES(z.zones) / 8;
     z.relit = s->receivers * (sizeof(vit_receiver) + 16) + s->basis_lights * sizeof(vit_basis_frame) +
               s->receivers / VIT_BASIS_GROUP * s->basis_lights * sizeof(vit_basis_group);
+    z.cached = s->cache_cells;
     of_patches(&z, s);
     z.evaluation = l->effects & ON(LIST) ? 4 + sizeof(vit_photon) : 16 + z.corner;
     if ((l->effects & ON(PHOTONS)) && c[VIT_COUNTER_nodes] > 0) {

@@ -53,7 +53,7 @@ output: { width = 128; height = 96; frames = 2; };
 meshes = ( { file = "$tools/scenes/balls.obj"; } );
 camera: { keys = ( { eye = [0.0, 2.9, 8.4]; target = [0.3, 0.55, 0.0]; fov = 46.0; } ); };
 sky: { image = "sky.tga"; light = true; };
-ambient = [0.02, 0.02, 0.03];
+ambient = [0.02, 0.02, 0.03]; ambient_radius = 0.4;
 materials = (
     { name = "mirror_silver"; kind = "mirror"; specular = [0.9, 0.9, 0.9]; }, { name = "mirror_gold"; kind = "thin_glass"; },
     { name = "glass_clear"; kind = "glass"; ior = 1.5; }, { name = "glass_green"; kind = "glass"; ior = 1.3; absorption = [1.2, 0.2, 0.8]; },
@@ -62,13 +62,14 @@ lights = (
     { type = "spot"; inner = 20.0; outer = 40.0; range = 40.0; keys = ( { position = [-4.5, 7.5, 5.5]; target = [0.0, 0.0, 0.0]; power = [900.0, 900.0, 900.0]; },
                                                                         { time = 1.0; position = [4.5, 7.5, 5.5]; } ); },
     { type = "directional"; keys = ( { position = [1.0, 3.0, 2.0]; target = [0.0, 0.0, 0.0]; irradiance = [1.0, 1.0, 0.8]; } ); } );
-quality: { photons = 4000; antialias = 4; light_samples = 4; sky_samples = 4; };
+quality: { photons = 4000; antialias = 4; light_samples = 4; sky_samples = 4; cache_error = 0.1; };
 EOF
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/shine.vit" --quiet --no-check --device host --indirect photons || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-shine.vit" --quiet --no-check --device host --indirect photons $tiny || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/basis-shine.vit" --quiet --no-check --device host $basis || exit 1
 [ "${VITRINE_MATRIX:-}" = smoke ] ||
     "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/live-shine.vit" --quiet --no-check --device host $live || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-progressive-shine.vit" --quiet --no-check --device host $tiny $basis --cache progressive || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-basis-shine.vit" --quiet --no-check --device host $tiny $basis || exit 1
 
 play="$tools/vitrine-play --verify --quiet"

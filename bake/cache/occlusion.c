@@ -99,6 +99,14 @@ static uint32_t rays_of(const occlusion_input *in, const cache_met *m) {
     return rays;
 }
 
+static float *nothing_known(const cache_met *m) {
+    const size_t points = (size_t)m->cell_count * VIT_CACHE_POINTS;
+    float *value = malloc((points + 1) * sizeof *value);
+    for (size_t i = 0; i < points && value; i++)
+        value[i] = NAN;
+    return value;
+}
+
 static vit_status find(const occlusion_input *in, const cache_sights *sights, cache_met *m, occlusion *out, vit_text *why) {
     vit_scene meta = {.cache_levels = 1};
     choose_levels(in, sights, &meta);
@@ -115,7 +123,9 @@ static vit_status find(const occlusion_input *in, const cache_sights *sights, ca
                                 .count = (m->taken_count + CHUNK - 1) / CHUNK,
                                 .threads = in->seen.threads};
     float *value = NULL;
-    if (a.open && parallel_run(&work, &asked))
+    if (in->live)
+        value = nothing_known(m);
+    else if (a.open && parallel_run(&work, &asked))
         value = cache_fit(m, a.open, &out->off);
     status = value ? put(m, value, out, why) : bake_fail(why, VIT_FAILED, "out of memory");
     free(a.open);

@@ -10,6 +10,7 @@ typedef struct occlusion_input {
     cache_sights_input seen;
     double radius;  /* rays end there, m */
     double spacing; /* between points on the picture, pixels */
+    bool live;      /* cells alone: frames fill them */
     double error;   /* standard deviation of a point's value by the rays' chance, about */
 } occlusion_input;
 

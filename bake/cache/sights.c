@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RAYS 3e6         /* from the cameras, over all frames; at most one a pixel */
+#define RAYS 2e6         /* from the cameras, over all frames; at most one a pixel */
 #define MOST_FRAMES 512u /* of the path that are looked at */
 #define MOST_MIRRORS 16u /* that a ray meets one after another */
 
@@ -52,6 +52,10 @@ static void look_row(void *user, uint32_t row) {
     }
 }
 
+static bool is_same_view(const cache_sights_input *in, uint32_t frame, uint32_t other) {
+    return memcmp(in->tracks->cameras + frame, in->tracks->cameras + other, sizeof *in->tracks->cameras) == 0;
+}
+
 static void keep(const looking *l, size_t count, cache_sights *out) {
     const vec3 right = vec3_load(l->in->tracks->cameras[l->frame].right);
     const float pixel = sqrtf(vec3_dot(right, right));
@@ -82,6 +86,8 @@ vit_status cache_sights_find(const cache_sights_input *in, cache_sights *out, vi
     }
     for (uint32_t f = 0; f < frames; f++) {
         l.frame = (uint32_t)((uint64_t)f * in->frames / frames);
+        if (f > 0 && l.step == 1 && is_same_view(in, l.frame, (uint32_t)((uint64_t)(f - 1) * in->frames / frames)))
+            continue;
         parallel_for(in->threads, down, look_row, &l);
         keep(&l, of_frame, out);
         if (in->progress)

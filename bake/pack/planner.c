@@ -294,6 +294,7 @@ static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
     c->effects |= effects_of_indirect(s, in->tracks, p);
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= is_positive(c->ambient) && s->ambient_radius > 0 ? VIT_BIT(OCCLUSION) : 0;
+    c->effects |= c->effects & VIT_BIT(OCCLUSION) && s->quality.cache == CACHE_PROGRESSIVE ? VIT_BIT(LIVE_CACHE) : 0;
     c->effects |= c->copies > 1 ? VIT_BIT(ANTIALIAS) : 0;
     if (c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) {
         c->chain = (uint32_t)s->quality.specular_depth;

@@ -21,6 +21,7 @@ vit_status stage_cache(bake *b, vit_text *why) {
                                          .threads = p->threads,
                                          .progress = stages_step,
                                          .user = p->progress},
+                                .live = c->effects & VIT_BIT(LIVE_CACHE),
                                 .radius = b->scene.ambient_radius,
                                 .spacing = b->scene.quality.cache_spacing,
                                 .error = b->scene.quality.cache_error};
@@ -36,6 +37,13 @@ vit_status stage_cache(bake *b, vit_text *why) {
     c->ambient_radius = (float)b->scene.ambient_radius;
     c->cache_step = o->step;
     c->cache_detail = o->detail;
+    if (in.live) {
+        c->cache_error = (float)in.error;
+        progress_line(p->progress, false, "ambient light: %u cells of %u levels, %u bytes (longest look-up %u, %u dropped)",
+                      o->cells, o->levels, (unsigned)(o->table.count * sizeof *o->table.records), c->cache_probes,
+                      o->table.dropped);
+        return VIT_OK;
+    }
     progress_line(p->progress, false,
                   "ambient light: %u points in %u cells of %u levels, %u bytes (longest look-up %u, %u dropped), "
                   "%u places x %u rays, off by %.3f of all light",

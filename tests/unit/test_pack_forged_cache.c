@@ -27,7 +27,11 @@
     X(META, step_of_nan, "cache_step must be in", im->scene->cache_step = NAN)                                                 \
     X(META, negative_detail, "cache_detail must be in", im->scene->cache_detail = -1)                                          \
     X(META, detail_of_nan, "cache_detail must be in", im->scene->cache_detail = NAN)                                           \
-    X(META, padding_of_the_cache, "padding is not 0", im->scene->cache_pad[1] = 1)                                             \
+    X(META, error_of_a_baked_cache, "cache_error must be in 0..0", im->scene->cache_error = 0.5f)                              \
+    X(META, no_error_of_a_live_one, "cache_error must be in", EFFECTS(BIT(LIVE_CACHE), 0))                                     \
+    X(META, live_cache_without_one, "LIVE_CACHE without OCCLUSION", EFFECTS(BIT(LIVE_CACHE), BIT(OCCLUSION)),                  \
+      im->scene->ambient_radius = im->scene->cache_step = im->scene->cache_detail = 0, im->scene->cache_error = 0.5f)          \
+    X(META, padding_of_the_cache, "padding is not 0", im->scene->cache_pad = 1)                                                \
     X(CACH, twice_the_cells, "META counts 16 records", im->scene->cache_cells = 16)
 
 #define RECORD_FAULTS(X)                                                                                                       \
@@ -49,6 +53,7 @@
     X(the_most_levels, im->scene->cache_levels = 16)                                                                           \
     X(more_probes_than_needed, im->scene->cache_probes = 64)                                                                   \
     X(any_step, im->scene->cache_step = FLT_MIN, im->scene->cache_detail = FLT_MAX)                                            \
+    X(a_live_cache, EFFECTS(BIT(LIVE_CACHE), 0), im->scene->cache_error = 1)                                                   \
     X(no_detail, im->scene->cache_detail = 0)
 
 #define FAULTS(X) META_FAULTS(X) RECORD_FAULTS(X)
