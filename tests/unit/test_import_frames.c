@@ -210,6 +210,27 @@ static void a_colour_of_amf_is_all_of_it(void **state) {
     model_free(&m);
 }
 
+/* Two of a triangle in a constellation, the second 5 m along x and turned by 90 degrees about z, or by none. */
+static void instances_of_amf_stand_where_they_should_or_are_refused(void **state) {
+    static const char amf[] =
+        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
+        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
+        "</volume></mesh></object><constellation id=\"2\"><instance objectid=\"1\"><deltax>0</deltax></instance>"
+        "<instance objectid=\"1\"><deltax>5</deltax><rz> %s</rz></instance></constellation></amf>";
+    char text[1024];
+    model m;
+    (void)state;
+    (void)snprintf(text, sizeof text, amf, "0.0");
+    put(FILE_OF("t.amf"), text);
+    import_good(FILE_OF("t.amf"), &m);
+    box_is(&m, 0, 0, 0, 6, 1, 0);
+    model_free(&m);
+    (void)snprintf(text, sizeof text, amf, "90");
+    put(FILE_OF("t.amf"), text);
+    refuse(FILE_OF("t.amf"), false, "its constellation turns instances (<rx>, <ry>, <rz>)");
+}
+
 /* ---- the rest ---- */
 
 static void a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says(void **state) {
@@ -293,6 +314,7 @@ int main(void) {
         T(units_and_axes_of_collada_that_are_none_are_told),
         T(files_of_amf_are_in_their_unit),
         T(a_colour_of_amf_is_all_of_it),
+        T(instances_of_amf_stand_where_they_should_or_are_refused),
         T(a_format_without_a_unit_is_metres_and_y_up_unless_the_scene_says),
         T(x3d_is_in_its_unit_and_y_is_up),
         T(frames_in_words),

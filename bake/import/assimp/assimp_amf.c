@@ -73,6 +73,21 @@ static char *unpack(const char *bytes, size_t *size) {
     return out;
 }
 
+/* By <rx>, <ry> or <rz>, degrees, of an instance. */
+static bool turns_instances(const char *at, const char *end) {
+    for (; at < end && (at = memchr(at, '<', (size_t)(end - at))); at++) {
+        double degrees = 0.0;
+        if (end - at < 5 || at[1] != 'r' || at[2] < 'x' || at[2] > 'z' || at[3] != '>')
+            continue;
+        const char *number = at + 4;
+        while (number < end && isspace((unsigned char)*number))
+            number++;
+        if (!import_number(number, end, false, &degrees) || degrees != 0.0)
+            return true;
+    }
+    return false;
+}
+
 char *assimp_read_amf(assimp_scene *a, char *text, size_t *size) {
     char head[HEAD + 1];
     char *unpacked = *size > 4 && memcmp(text, "PK\3\4", 4) == 0 ? unpack(text, size) : NULL;
@@ -87,6 +102,7 @@ char *assimp_read_amf(assimp_scene *a, char *text, size_t *size) {
     const char *root = strstr(head, "<amf");
     if (root)
         attribute(root, "unit", a->amf_unit);
+    a->amf_turns = turns_instances(text, text + *size);
     return text;
 }
 

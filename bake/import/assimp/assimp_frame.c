@@ -139,6 +139,9 @@ static bool find_frame(assimp_scene *a, ai_frame *out) {
     }
     if (!begins(reader, "Additive manufacturing"))
         return true;
+    if (a->amf_turns)
+        return import_fail(a->im, "its constellation turns instances (<rx>, <ry>, <rz>), which the mesh reader takes for ways: "
+                                  "save it as one object, or as 3MF, glTF or OBJ");
     if (!assimp_unit_amf(a, &out->stated.unit, &stated))
         return false;
     out->stated.unit_by = stated ? FRAME_BY_FILE : FRAME_BY_FORMAT;

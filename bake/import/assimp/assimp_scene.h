@@ -29,6 +29,7 @@ typedef struct assimp_scene {
     bool bad_unit, bad_axis; /* what the file says of them is none */
     char amf_unit[64];       /* as the root element of an AMF file has it, or "" */
     bool vertex_normals;     /* an FBX file has normals by vertex, which not all releases read */
+    bool amf_turns;          /* an AMF file turns instances, which Assimp takes for ways */
     unsigned lost_nodes;     /* that were NULL in Assimp's tree */
 } assimp_scene;
 
@@ -50,7 +51,8 @@ bool assimp_frame(assimp_scene *a, const scene_mesh *mesh, double place[12]);
 /* How Assimp's name of the reader that read the file begins, "Collada"; "" if it has none. */
 const char *assimp_reader(const assimp_scene *a);
 
-/* assimp_amf.c: the text of an AMF file, unpacked if it is an archive; `text` has been freed then. Sets a->amf_unit. */
+/* assimp_amf.c: the text of an AMF file, unpacked if it is an archive; `text` has been freed then. Sets a->amf_unit, amf_turns.
+ */
 char *assimp_read_amf(assimp_scene *a, char *text, size_t *size);
 /* Metres a unit; the format's default, 0.001, where the file says none. False: the unit is none. */
 bool assimp_unit_amf(const assimp_scene *a, double *unit, bool *stated);
