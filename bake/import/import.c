@@ -216,9 +216,11 @@ static void find_box(model *m) {
 
 static void next_file(importer *im, const char *file) {
     free(im->uses);
+    free(im->use_of);
     free(im->means);
     im->uses = NULL;
-    im->use_count = im->use_room = 0;
+    im->use_of = NULL;
+    im->use_count = im->use_room = im->use_of_room = 0;
     im->means = NULL;
     im->mean_count = im->mean_room = 0;
     im->bad_index = im->not_finite = im->clear = im->bad_polygon = im->too_far = 0;

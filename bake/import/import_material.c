@@ -55,23 +55,40 @@ static void apply_override(importer *im, material_use *use) {
     }
 }
 
+/* For one more use, of material `source`. */
+static bool room_for(importer *im, unsigned source) {
+    const size_t had = im->use_of_room;
+    if (!import_room(im, &im->use_of, &im->use_of_room, (size_t)source + 1, sizeof *im->use_of) ||
+        !import_room(im, &im->uses, &im->use_room, im->use_count + 1, sizeof *im->uses))
+        return false;
+    memset(im->use_of + had, 0, (im->use_of_room - had) * sizeof *im->use_of);
+    return true;
+}
+
+void import_forget_materials(importer *im) {
+    while (im->use_count > 0)
+        im->use_of[im->uses[--im->use_count].source] = 0;
+}
+
 bool import_material(importer *im, unsigned source, const float *tint, material_use **use) {
     static const float white[3] = {1.0f, 1.0f, 1.0f};
     const bool tinted = tint != NULL;
     tint = tint ? tint : white;
-    for (size_t i = 0; i < im->use_count; i++) {
-        *use = &im->uses[i];
-        if ((*use)->source == source && (*use)->tinted == tinted && !memcmp((*use)->tint, tint, sizeof(*use)->tint))
+    for (uint32_t i = source < im->use_of_room ? im->use_of[source] : 0; i > 0; i = (*use)->before) {
+        *use = &im->uses[i - 1];
+        if ((*use)->tinted == tinted && !memcmp((*use)->tint, tint, sizeof(*use)->tint))
             return true;
     }
-    if (!import_room(im, &im->uses, &im->use_room, im->use_count + 1, sizeof *im->uses))
+    if (!room_for(im, source))
         return false;
     *use = &im->uses[im->use_count++];
     **use = (material_use){.source = source,
+                           .before = im->use_of[source],
                            .tinted = tinted,
                            .index = -1,
                            .alpha_by_letter = -1.0f,
                            .m = {.image = -1, .alpha = 1.0f, .exponent = 1.0f, .ior = 1.0f, .area_light = true}};
+    im->use_of[source] = (uint32_t)im->use_count;
     memcpy((*use)->tint, tint, sizeof(*use)->tint);
     if (!im->format->material(im, *use))
         return false;

@@ -34,7 +34,8 @@ static bool take_stock(importer *im, const uint64_t *of_material, unsigned mater
     im->m->warnings = warnings;
     im->m->default_highlights = highlights;
     im->m->principled = principled;
-    im->use_count = im->mean_count = 0;
+    import_forget_materials(im);
+    im->mean_count = 0;
     return fine;
 }
 

@@ -33,6 +33,8 @@ typedef struct importer {
     bool states_units;         /* the format says candela, lux and nits */
     struct material_use *uses; /* materials of this file that a triangle uses */
     size_t use_count, use_room;
+    uint32_t *use_of; /* a material of the file: 1 + the index of the last of its uses, 0 for none */
+    size_t use_of_room;
     bool *override_used; /* one a scene material: some mesh has a material of that name */
     size_t vertex_room, triangle_room, material_room, image_room;
     uint64_t texels;                       /* of all images so far */
@@ -58,6 +60,7 @@ typedef struct importer {
 /* A material as one mesh sees it: which texture coordinates, which constant vertex colour. */
 typedef struct material_use {
     unsigned source;   /* material of the file */
+    uint32_t before;   /* 1 + the index of another use of it, or 0 */
     bool tinted;       /* its vertices have a colour, all the same */
     float tint[3];     /* that one, 1 if none */
     model_material m;  /* image still -1 */
@@ -185,6 +188,8 @@ const char *import_number(const char *at, const char *end, bool single, double *
 /* The use of material `source` with vertex colour `tint`, NULL if there is none; false: out of memory, or what the format's
  * reader says. The pointer is good until the next call. */
 bool import_material(importer *im, unsigned source, const float *tint, material_use **use);
+/* There are no uses any more. */
+void import_forget_materials(importer *im);
 /* Loads the use's image and appends its material to the model, on first call. */
 bool import_material_index(importer *im, material_use *use, uint32_t *index);
 float import_clamp(float value, float most); /* to 0..most; NaN is 0 */
