@@ -178,7 +178,7 @@ static bool fail_by(importer *im, int status) {
         im->status = VIT_FAILED;
         return import_fail(im, "interrupted");
     }
-    return import_fail(im, "the mesh reader breaks down on it");
+    return import_fail(im, "the mesh reader breaks down on it; as glTF, OBJ or PLY it may be read");
 }
 
 bool import_in_child(importer *im, const scene_mesh *mesh) {
@@ -206,6 +206,6 @@ bool import_in_child(importer *im, const scene_mesh *mesh) {
     if (heard == STUCK)
         return import_fail(im, "the mesh reader waits for something that never comes");
     if (heard == NONSENSE)
-        return import_fail(im, "the mesh reader breaks down on it");
+        return import_fail(im, "the mesh reader breaks down on it; as glTF, OBJ or PLY it may be read");
     return heard == ENDED ? fail_by(im, status) : heard == READ;
 }
