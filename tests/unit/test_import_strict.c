@@ -54,7 +54,8 @@ static void colours_of_vertices_that_vary(void **state) {
 static void textures_of_meshes_without_coordinates(void **state) {
     (void)state;
     put_image(FILE_OF("image.tga"), 255);
-    put_gltf("", ONE_NODE "," TEXTURE("") "," MATERIAL(BASE("\"baseColorTexture\":{\"index\":0}")));
+    put_gltf("", ONE_NODE ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"image.tga\"}],"
+                          "\"materials\":[{\"name\":\"m\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}]");
     said_and_refused(GLTF, "have no texture coordinates: of its texture they show one colour");
 }
 
