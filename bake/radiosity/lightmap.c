@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define LEAST_RECEIVERS 2048u
-#define MOST_RECEIVERS 393216u
+#define MOST_RECEIVERS 131072u
 #define LOOK_ERROR 0.15f /* of the error that is allowed: soft_lights.error */
 #define OFF_LIMITS 3.0f  /* errors: where light is known no better, rays find it */
 #define DIM 0.02f        /* of the mean light of the first receivers: less counts as so much */

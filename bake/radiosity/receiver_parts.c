@@ -136,10 +136,10 @@ static uint32_t parts_for(const receiver_piece *piece, float contrast, float ste
 
 /* The step by which they are not too many. */
 static float find_step(const placing *p, const float *contrast) {
-    const uint32_t records = p->out->count - p->out->follower_count, most = p->in->light ? p->in->most
-                                                                            : records * MORE > MORE_LEAST && p->begin == 0
-                                                                                ? records * MORE
-                                                                                : MORE_LEAST;
+    const uint32_t records = p->out->count - p->out->follower_count;
+    uint32_t most = records * MORE > MORE_LEAST && p->begin == 0 ? records * MORE : MORE_LEAST;
+    if (p->in->light)
+        most = p->in->most / 2u;
     for (float step = p->in->light ? p->in->error : p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
         uint64_t nodes = 0;
         for (uint32_t i = 0; i < p->end - p->begin; i++) {
