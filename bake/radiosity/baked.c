@@ -181,7 +181,11 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
     return lights > 0 ? transport_find(&t, out, &f->report, why) : VIT_OK;
 }
 
-/* Light of all receivers: receivers x columns. */
+static bool is_asked(const receiver *r) {
+    return r->asked && !r->follows;
+}
+
+/* Light of receivers that are asked, and of those that follow them: receivers x columns. */
 static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, const transport_light *out, vit_text *why) {
     const uint32_t columns = 3 * f->states->count;
     uint32_t count = 0;
@@ -189,16 +193,20 @@ static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, const
     if (!records)
         return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     for (uint32_t i = 0; i < r->count; i++)
-        if (!r->receivers[i].follows)
+        if (is_asked(r->receivers + i))
             records[count++] = r->receivers[i];
     const vit_status status = find(f, records, count, fewer, out, why);
     free(records);
     for (uint32_t i = r->count; i-- > 0 && status == VIT_OK;)
-        if (!r->receivers[i].follows) {
+        if (is_asked(r->receivers + i)) {
             memmove(out->irradiance + (size_t)i * columns, out->irradiance + (size_t)--count * columns,
                     columns * sizeof *out->irradiance);
             if (out->noise)
                 out->noise[i] = out->noise[count];
+        } else {
+            memset(out->irradiance + (size_t)i * columns, 0, columns * sizeof *out->irradiance);
+            if (out->noise)
+                out->noise[i] = 0.0f;
         }
     if (status == VIT_OK)
         receivers_follow(r, out->irradiance, columns);

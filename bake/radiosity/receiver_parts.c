@@ -13,7 +13,7 @@
 #define MOST_COLUMNS 3u   /* of that */
 #define MORE_STEP 1.3f    /* where there would be too many */
 #define MORE 1u           /* receivers of parts, at most so many times the records of cells, */
-#define MORE_LEAST 16384u /* or so many; parts of parts, always */
+#define MORE_LEAST 32768u /* or so many; parts of parts, always */
 
 /* How much the light of a piece's corners differs, over its mean, beyond what noise alone makes of three; all columns
  * together. */
@@ -134,24 +134,6 @@ static uint32_t parts_for(const receiver_piece *piece, float contrast, float ste
     return parts;
 }
 
-/* The step by which they are not too many. */
-static float find_step(const placing *p, const float *contrast) {
-    const uint32_t records = p->out->count - p->out->follower_count;
-    uint32_t most = records * MORE > MORE_LEAST && p->begin == 0 ? records * MORE : MORE_LEAST;
-    if (p->in->light)
-        most = p->in->most / 2u;
-    for (float step = p->in->light ? p->in->error : p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
-        uint64_t nodes = 0;
-        for (uint32_t i = 0; i < p->end - p->begin; i++) {
-            const receiver_piece *piece = p->pieces + p->begin + i;
-            const uint32_t n = p->in->light ? parts_by_light(p, piece, step) : parts_for(piece, contrast[i], step, p->finest);
-            nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
-        }
-        if (nodes <= most)
-            return step;
-    }
-}
-
 bool receivers_start_pieces(placing *p) {
     p->pieces = malloc((p->cells.count + 1u) * sizeof *p->pieces);
     for (uint32_t i = 0; p->pieces && i < p->cells.count; i++)
@@ -228,24 +210,50 @@ static bool grade(placing *p) {
     return true;
 }
 
+static uint64_t nodes_of_parts(const placing *p) {
+    uint64_t nodes = 0;
+    for (uint32_t i = p->begin; i < p->end; i++) {
+        const uint32_t n = p->pieces[i].parts;
+        nodes += n > 1 ? n * n / 2u : 0u; /* about; neighbours share some */
+    }
+    return nodes;
+}
+
+/* With the least step by which they are not too many. False: out of memory. */
+static bool choose_parts(placing *p, const float *contrast) {
+    const bool light = p->in->light;
+    const uint32_t records = p->out->count - p->out->follower_count;
+    uint32_t most = records * MORE > MORE_LEAST && p->begin == 0 ? records * MORE : MORE_LEAST;
+    if (light)
+        most = p->in->most / 2u;
+    for (float step = light ? p->in->error : p->begin ? STEP * 0.5f : STEP;; step *= MORE_STEP) {
+        for (uint32_t i = p->begin; i < p->end; i++)
+            p->pieces[i].parts = light ? parts_by_light(p, p->pieces + i, step)
+                                       : parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
+        const uint64_t ungraded = nodes_of_parts(p);
+        if (!grade(p))
+            return false;
+        if ((light ? ungraded : nodes_of_parts(p)) <= most)
+            return true;
+    }
+}
+
 bool receivers_find_parts(placing *p, const float *irradiance, const float *noise) {
     float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
     if (!contrast)
         return false;
-    const double mean = mean_of(p, irradiance);
+    if (p->begin == 0 || p->in->light)
+        p->mean = mean_of(p, irradiance);
     if (p->begin == 0)
-        receivers_part_records(p, irradiance, mean);
+        receivers_part_records(p, irradiance, p->mean);
     if (p->in->light)
-        judge_pieces(p, irradiance, mean);
+        judge_pieces(p, irradiance, p->mean);
     for (uint32_t i = p->begin; i < p->end && !p->in->light; i++)
         if (may_be_divided(p, i))
-            contrast[i - p->begin] = contrast_of(p, i, irradiance, noise, mean);
-    const float step = find_step(p, contrast);
-    for (uint32_t i = p->begin; i < p->end; i++)
-        p->pieces[i].parts = p->in->light ? parts_by_light(p, p->pieces + i, step)
-                                          : parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
+            contrast[i - p->begin] = contrast_of(p, i, irradiance, noise, p->mean);
+    const bool fine = choose_parts(p, contrast);
     free(contrast);
-    return grade(p) && add_parts(p);
+    return fine && add_parts(p);
 }
 
 /* An end that hangs may lie on a longer edge, and on an edge between two that carry something may hang: both stay straight. */

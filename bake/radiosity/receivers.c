@@ -348,6 +348,19 @@ static vit_status look_last(placing *p, vit_text *why) {
     return status;
 }
 
+/* Corners of pieces that may be divided now, and those that they follow. */
+static void ask(placing *p) {
+    receivers *o = p->out;
+    for (uint32_t i = 0; i < o->count; i++)
+        o->receivers[i].asked = p->begin == 0 || p->in->light;
+    for (uint32_t i = p->begin; i < p->end; i++)
+        for (int k = 0; k < 3 && p->spacing[p->pieces[i].side] > 0.0f; k++)
+            o->receivers[o->cells[i].receiver[k]].asked = true;
+    for (uint32_t i = o->follower_count; i-- > 0;)
+        for (uint32_t k = 0; k < RECEIVER_FROM && o->receivers[o->followers[i].receiver].asked; k++)
+            o->receivers[o->followers[i].from[k]].asked = true;
+}
+
 /* Light at a first look says which, at another which of their parts. */
 static vit_status divide(placing *p, vit_text *why) {
     const receivers_input *in = p->in;
@@ -357,6 +370,7 @@ static vit_status divide(placing *p, vit_text *why) {
     for (int level = 0; level < VIT_RECEIVER_LEVELS && in->look && status == VIT_OK && p->begin < p->end; level++) {
         float *irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance),
               *noise = malloc((p->out->count + 1u) * sizeof *noise);
+        ask(p);
         status = irradiance && noise ? in->look(in->user, p->out, irradiance, noise, why)
                                      : bake_fail(why, VIT_FAILED, "receivers: out of memory");
         if (status == VIT_OK && !divide_pieces(p, irradiance, noise))
@@ -452,6 +466,8 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
         bake_fail(why, VIT_FAILED, "receivers: out of memory");
     if (status == VIT_OK)
         status = divide(&p, why);
+    for (uint32_t i = 0; i < out->count; i++)
+        out->receivers[i].asked = true;
     if (status == VIT_OK) {
         drop_dark(&p);
         out->side_count = 2 * in->rays->s->triangle_count;

@@ -24,8 +24,8 @@ typedef struct receivers_input {
     uint32_t most;                  /* receivers wanted at most: the spacing grows until they are no more, or nearly so */
     uint32_t records;               /* whose light is computed for the first look, about: above that others follow them */
     unsigned threads;               /* 0: all cores; changes no byte */
-    /* A first look at the light of receivers, roughly: receivers x columns, and the deviation of each one's, all columns added
-     * up. Cells whose corners differ much are divided. NULL: none is. */
+    /* A first look at the light of receivers that are asked, roughly: receivers x columns, and the deviation of each one's, all
+     * columns added up. Cells whose corners differ much are divided. NULL: none is. */
     vit_status (*look)(void *user, const struct receivers *r, float *irradiance, float *noise, vit_text *why);
     void *user;
     uint32_t columns;
@@ -41,6 +41,7 @@ typedef struct receiver {
     float b1, b2;
     float reach;  /* m: records as near as that say what its light is; 0: none does */
     bool follows; /* its light follows from that of others: of followers. Those whose does not are records. */
+    bool asked;   /* for its light, at this look */
     bool hangs;   /* on an edge that a neighbour divides less often, */
     bool carries; /* or is an end of it, and stays what it is */
 } receiver;

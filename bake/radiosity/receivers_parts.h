@@ -38,6 +38,7 @@ typedef struct placing {
     bool *looked_at;        /* a cell: by the cameras, or none of its side's cells is */
     receiver_piece *pieces; /* receiver_parts.c */
     uint32_t piece_count;
+    double mean;         /* of the light at the first look, columns added up */
     uint32_t begin, end; /* pieces that may be divided now: what is before is divided already, or stays whole */
     uint64_t *edges;     /* a hash table of pieces' edges: their two receivers, the larger in the high half */
     uint8_t *edge_parts; /* the fewest that a piece there is divided into; 0: no such edge */
