@@ -18,7 +18,7 @@ struct vit {
     void *state; /* the device's */
     int profile;
     uint32_t history; /* effect live-cache: the frame that comes after those in its buffers; VIT_NONE: nobody knows */
-    uint64_t frames; /* rendered since vit_open */
+    uint64_t frames;  /* rendered since vit_open */
     double pass_ms[VIT_MAX_PASSES];
     vit_host_fault faults[VIT_HOST_FAULTS]; /* a ring */
     uint64_t noted;                         /* faults put into it */

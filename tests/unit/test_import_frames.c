@@ -167,8 +167,8 @@ static void put_zip(const char *path, const char *text) {
 
 static void files_of_amf_are_in_their_unit(void **state) {
     static const char amf[] =
-        "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
-        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+        "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y>"
+        "<z>0</z></coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
         "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
         "</volume></mesh></object></amf>";
     char text[1024];

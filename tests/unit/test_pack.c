@@ -8,7 +8,8 @@
 
 /* XXH3-64 of the fixtures' packs in format version 10. If this test fails, files of users fail too: raise VIT_PACK_VERSION,
  * and put the new hashes here. */
-static const uint64_t golden_hashes[FIXTURE_KINDS] = {0x511c8fa39acc7eedu, 0x659dcb1470690ae5u, 0xc8ca9b145cda70c9u, 0xdb504bbf55420666u};
+static const uint64_t golden_hashes[FIXTURE_KINDS] = {0x511c8fa39acc7eedu, 0x659dcb1470690ae5u, 0xc8ca9b145cda70c9u,
+                                                      0xdb504bbf55420666u};
 
 #define EACH_KIND(kind) for (fixture_kind kind = 0; kind < FIXTURE_KINDS; kind++)
 
