@@ -168,7 +168,8 @@ static void put_zip(const char *path, const char *text) {
 static void files_of_amf_are_in_their_unit(void **state) {
     static const char amf[] =
         "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y>"
-        "<z>0</z></coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
+        "<z>0</z></coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>"
+        "<vertex><coordinates>"
         "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
         "</volume></mesh></object></amf>";
     char text[1024];
@@ -213,7 +214,8 @@ static void a_colour_of_amf_is_all_of_it(void **state) {
 /* Two of a triangle in a constellation, the second 5 m along x and turned by 90 degrees about z, or by none. */
 static void instances_of_amf_stand_where_they_should_or_are_refused(void **state) {
     static const char amf[] =
-        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
+        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><object id=\"1\"><mesh><vertices>"
+        "<vertex><coordinates><x>0</x><y>0</y><z>0</z>"
         "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
         "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
         "</volume></mesh></object><constellation id=\"2\"><instance objectid=\"1\"><deltax>0</deltax></instance>"
