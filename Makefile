@@ -33,7 +33,7 @@ BASE += $(if $(filter s390x-%,$(MACHINE)),-fexcess-precision=fast)
 CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
-KERNELS := ../include/vitrine_frame.h records.clh counters.clh transfer_code.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh bundle.clh surface.clh specular.clh cells.clh receivers.cl visibility.cl bundle_visibility.cl \
+KERNELS := ../include/vitrine_frame.h records.clh cache_cell.clh counters.clh transfer_code.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh bundle.clh surface.clh specular.clh cells.clh receivers.cl visibility.cl bundle_visibility.cl \
            chains.cl samples.cl direct.cl bundle_direct.cl radiosity.cl skylight.cl cache.clh cache.cl photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl indirect.cl sparse.cl film.cl resolve.cl transfer_product.clh transfer_product.cl
 
 RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
@@ -101,7 +101,7 @@ $(B)/kernel_sources.c: $(addprefix kernels/,$(KERNELS)) Makefile
 
 $(B)/kernel_list.h: Makefile
 	@mkdir -p $(@D)
-	@for f in $(filter-out %.h records.clh counters.clh transfer_code.clh,$(KERNELS)); do echo "#include \"kernels/$$f\""; done > $@
+	@for f in $(filter-out %.h records.clh cache_cell.clh counters.clh transfer_code.clh,$(KERNELS)); do echo "#include \"kernels/$$f\""; done > $@
 $(B)/host_programs.h: Makefile
 	@mkdir -p $(@D)
 	@for p in $(HOST_PROGRAMS); do echo "PROGRAM($${p%_*}, $${p##*_})"; done > $@

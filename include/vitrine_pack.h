@@ -15,6 +15,7 @@
 #ifndef VITRINE_PACK_H
 #define VITRINE_PACK_H
 
+#include "../kernels/cache_cell.clh"
 #include "../kernels/counters.clh"
 #include "../kernels/records.clh"
 #include "../kernels/transfer_code.clh"

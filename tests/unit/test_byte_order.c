@@ -118,11 +118,13 @@ static void expect_words(const char *path, int *records, int *fields) {
 
 static void every_field_of_every_record_is_a_word(void **state) {
     (void)state;
-    int records = 0, fields = 0, codes = 0;
+    int records = 0, fields = 0, codes = 0, cells = 0;
     assert_true(sizeof(vit_u32) == VIT_WORD && sizeof(vit_i32) == VIT_WORD && sizeof(float) == VIT_WORD);
     expect_words("kernels/records.clh", &records, &fields);
     expect_words("kernels/transfer_code.clh", &codes, &fields);
     assert_int_equal(codes, 1);
+    expect_words("kernels/cache_cell.clh", &cells, &fields);
+    assert_int_equal(cells, 1);
     assert_true(records >= 12 && fields > 60);
 #define X(code, type, records) assert_int_equal(sizeof(type) % VIT_WORD, 0);
     VIT_SECTIONS(X)
