@@ -231,7 +231,8 @@ static vit_status look_again(finding *f, baked *out, vit_text *why) {
                                    malloc((r->count + 1u) * sizeof *light.noise)};
     finding again = {.in = f->in, .states = &s};
     vit_status status = light.irradiance && light.noise ? find_all(&again, r, 1, &light, why) : VIT_FAILED;
-    if (!light.irradiance || !light.noise || (status == VIT_OK && !receivers_smooth(r, light.irradiance, light.noise, columns)))
+    if (!light.irradiance || !light.noise ||
+        (status == VIT_OK && !receivers_smooth(r, light.irradiance, light.noise, columns, f->in->threads)))
         status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     out->report = again.report;
     if (status == VIT_OK)

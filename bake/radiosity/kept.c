@@ -1,6 +1,4 @@
 #include "radiosity/kept.h"
-#include <stdlib.h>
-#include <string.h>
 
 static bool same(double a, double b) {
     return !(a < b) && !(a > b);
@@ -15,26 +13,16 @@ static bool is_of(const baked_kept_one *o, const baked_input *in, uint64_t effec
            k->panes == in->panes;
 }
 
-static void *copied(const void *from, size_t count, size_t size) {
-    void *to = from ? malloc(count * size + 1) : NULL;
-    return to ? memcpy(to, from, count * size) : NULL;
-}
-
 static bool copy(const baked *from, const baked_input *in, baked *to) {
     const receivers *r = &from->receivers;
     const basis *b = &from->basis;
     *to = *from;
-    to->receivers.receivers = copied(r->receivers, from->placed, sizeof *r->receivers);
-    to->receivers.sides = copied(r->sides, r->side_count, sizeof *r->sides);
-    to->receivers.cells = copied(r->cells, r->cell_count, sizeof *r->cells);
-    to->receivers.splits = copied(r->splits, r->split_count, sizeof *r->splits);
-    to->still = copied(from->still, r->count, sizeof *from->still);
-    to->frames = copied(from->frames, (size_t)in->frames * from->lights, sizeof *from->frames);
-    to->basis.groups = copied(b->groups, (size_t)b->group_count * from->lights, sizeof *b->groups);
-    to->basis.words = copied(b->words, b->word_count, sizeof *b->words);
-    to->basis.coefficients = copied(b->coefficients, b->coefficient_count, sizeof *b->coefficients);
-    if (!to->receivers.receivers == !r->receivers && !to->receivers.sides == !r->sides && !to->receivers.cells == !r->cells &&
-        !to->receivers.splits == !r->splits && !to->still == !from->still && !to->frames == !from->frames &&
+    to->still = receivers_copied(from->still, r->count, sizeof *from->still);
+    to->frames = receivers_copied(from->frames, (size_t)in->frames * from->lights, sizeof *from->frames);
+    to->basis.groups = receivers_copied(b->groups, (size_t)b->group_count * from->lights, sizeof *b->groups);
+    to->basis.words = receivers_copied(b->words, b->word_count, sizeof *b->words);
+    to->basis.coefficients = receivers_copied(b->coefficients, b->coefficient_count, sizeof *b->coefficients);
+    if (receivers_copy(r, from->placed, &to->receivers) && !to->still == !from->still && !to->frames == !from->frames &&
         !to->basis.groups == !b->groups && !to->basis.words == !b->words && !to->basis.coefficients == !b->coefficients)
         return true;
     baked_free(to);

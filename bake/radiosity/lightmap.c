@@ -132,35 +132,13 @@ void lightmap_free(lightmap *m) {
     *m = (lightmap){0};
 }
 
-/* Copies of what sections hold. False: out of memory; there is nothing to free. */
 static bool copy(const lightmap *from, lightmap *to) {
-    const receivers *r = &from->receivers;
-    const struct {
-        const void *from;
-        size_t bytes;
-    } part[] = {{r->sides, r->side_count * sizeof *r->sides},
-                {r->cells, r->cell_count * sizeof *r->cells},
-                {r->splits, r->split_count * sizeof *r->splits},
-                {from->light, r->count * sizeof *from->light}};
-    void *made[sizeof part / sizeof *part];
-    bool fine = true;
-    for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
-        made[i] = malloc(part[i].bytes + 1);
-        fine = fine && made[i];
-        if (made[i] && part[i].from)
-            memcpy(made[i], part[i].from, part[i].bytes);
-    }
     *to = *from;
-    to->receivers.receivers = NULL;
-    to->receivers.followers = NULL;
-    to->receivers.irradiance = NULL;
-    to->receivers.sides = made[0];
-    to->receivers.cells = made[1];
-    to->receivers.splits = made[2];
-    to->light = made[3];
-    if (!fine)
-        lightmap_free(to);
-    return fine;
+    to->light = receivers_copied(from->light, from->receivers.count, sizeof *from->light);
+    if (receivers_copy(&from->receivers, 0, &to->receivers) && !to->light == !from->light)
+        return true;
+    lightmap_free(to);
+    return false;
 }
 
 static bool same(double a, double b) {

@@ -30,6 +30,11 @@ static float contrast_of(const placing *p, uint32_t piece, const float *irradian
     return differ > 0.0 && sum + DIM * mean > 0.0 ? (float)(differ / (sum + DIM * mean)) : 0.0f;
 }
 
+/* Parts of cells that the cameras look at are looked at, too. */
+static bool is_seen(const placing *p, uint32_t piece) {
+    return p->met[p->pieces[piece].side] && (piece >= p->cells.count || p->looked_at[piece]);
+}
+
 /* Light in the middles of pieces, against what interpolation says of it. */
 typedef struct judging {
     const placing *p;
@@ -73,7 +78,7 @@ static void judge(void *user, uint32_t item) {
     const uint32_t index = j->first + item;
     const bool whole = index < p->cells.count;
     receiver_piece *piece = p->pieces + index;
-    if (!p->met[piece->side] || (whole && !p->looked_at[index]))
+    if (!is_seen(p, index))
         return;
     for (int i = 0; i < (whole ? 4 : 1); i++)
         piece->off = float_max(piece->off, off_at(j, index, at[i]));
@@ -100,11 +105,11 @@ static uint32_t finest_parts(const placing *p, const receiver_piece *piece) {
 
 void receivers_find_unknown(placing *p, const float *irradiance) {
     double all = 0.0, unknown = 0.0;
-    judge_pieces(p, irradiance, mean_of(p, irradiance));
+    judge_pieces(p, irradiance, p->mean);
     for (uint32_t i = 0; i < p->piece_count; i++) {
         const receiver_piece *piece = p->pieces + i;
         const float edge = p->spacing[piece->side] / (float)piece->finer;
-        if (piece->parts > 1 || !p->met[piece->side] || (i < p->cells.count && !p->looked_at[i]))
+        if (piece->parts > 1 || !is_seen(p, i))
             continue;
         all += (double)(edge * edge);
         if (piece->off > p->in->off_limits && finest_parts(p, piece) > 1) {
@@ -186,10 +191,6 @@ static bool clear_edges(placing *p) {
     return p->edges && p->edge_parts;
 }
 
-static bool may_be_divided(const placing *p, uint32_t piece) {
-    return p->met[p->pieces[piece].side] && (p->begin > 0 || p->looked_at[piece]);
-}
-
 /* Beside a piece that is divided others are divided as often: what happens on the common edge is not to be seen at their
  * corners. False: out of memory. */
 static bool grade(placing *p) {
@@ -202,7 +203,7 @@ static bool grade(placing *p) {
             p->edge_parts[at] = (uint8_t)(parts > p->edge_parts[at] ? parts : p->edge_parts[at]);
         }
     for (uint32_t i = p->begin; i < p->end; i++)
-        for (int k = 0; k < 3 && may_be_divided(p, i); k++) {
+        for (int k = 0; k < 3 && is_seen(p, i); k++) {
             const vit_u32 *r = p->out->cells[i].receiver;
             const uint32_t most = p->edge_parts[edge_slot(p, r[k], r[(k + 1) % 3])];
             p->pieces[i].parts = most > p->pieces[i].parts ? most : p->pieces[i].parts;
@@ -230,10 +231,9 @@ static bool choose_parts(placing *p, const float *contrast) {
         for (uint32_t i = p->begin; i < p->end; i++)
             p->pieces[i].parts = light ? parts_by_light(p, p->pieces + i, step)
                                        : parts_for(p->pieces + i, contrast[i - p->begin], step, p->finest);
-        const uint64_t ungraded = nodes_of_parts(p);
         if (!grade(p))
             return false;
-        if ((light ? ungraded : nodes_of_parts(p)) <= most)
+        if (nodes_of_parts(p) <= most)
             return true;
     }
 }
@@ -242,14 +242,14 @@ bool receivers_find_parts(placing *p, const float *irradiance, const float *nois
     float *contrast = calloc(p->end - p->begin + 1u, sizeof *contrast);
     if (!contrast)
         return false;
-    if (p->begin == 0 || p->in->light)
+    if (p->begin == 0)
         p->mean = mean_of(p, irradiance);
     if (p->begin == 0)
         receivers_part_records(p, irradiance, p->mean);
     if (p->in->light)
         judge_pieces(p, irradiance, p->mean);
     for (uint32_t i = p->begin; i < p->end && !p->in->light; i++)
-        if (may_be_divided(p, i))
+        if (is_seen(p, i))
             contrast[i - p->begin] = contrast_of(p, i, irradiance, noise, p->mean);
     const bool fine = choose_parts(p, contrast);
     free(contrast);

@@ -1,6 +1,7 @@
 /* Noise of receivers. Where neighbours differ by no more than noise makes them, each takes the mean of those round about
  * (bilateral filtering: Tomasi and Manduchi 1998, with the noise of each as the range); where light really changes they stay.
  */
+#include "common/parallel.h"
 #include "radiosity/receivers.h"
 #include <math.h>
 #include <stdlib.h>
@@ -61,7 +62,8 @@ static double alike(const smoothing *s, uint32_t a, uint32_t b) {
     return part < all ? (1.0 - part / all) * (1.0 - part / all) : 0.0;
 }
 
-static void smooth_one(const smoothing *s, uint32_t i) {
+static void smooth_one(void *user, uint32_t i) {
+    const smoothing *s = user;
     float *to = s->to + (size_t)i * s->columns;
     const float *own = s->irradiance + (size_t)i * s->columns;
     double all = 1.0, squares = (double)s->noise[i] * (double)s->noise[i];
@@ -80,7 +82,7 @@ static void smooth_one(const smoothing *s, uint32_t i) {
     s->noise_to[i] = (float)(sqrt(squares) / all);
 }
 
-bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns) {
+bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns, unsigned threads) {
     const size_t numbers = (size_t)r->count * columns;
     smoothing s = {.r = r,
                    .columns = columns,
@@ -90,8 +92,7 @@ bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint3
                    .noise_to = malloc((r->count + 1u) * sizeof *s.noise_to)};
     const bool fine = s.to && s.noise_to && find_neighbours(r, &s.n);
     for (int round = 0; round < ROUNDS && fine; round++) {
-        for (uint32_t i = 0; i < r->count; i++)
-            smooth_one(&s, i);
+        parallel_for(threads, r->count, smooth_one, &s);
         memcpy(irradiance, s.to, numbers * sizeof *irradiance);
         memcpy(noise, s.noise_to, r->count * sizeof *noise);
         receivers_follow(r, irradiance, columns);

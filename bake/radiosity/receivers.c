@@ -483,13 +483,3 @@ vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *
         receivers_free(out);
     return status;
 }
-
-void receivers_free(receivers *r) {
-    free(r->sides);
-    free(r->cells);
-    free(r->splits);
-    free(r->receivers);
-    free(r->followers);
-    free(r->irradiance);
-    *r = (receivers){0};
-}

@@ -72,10 +72,15 @@ typedef struct receivers {
 /* VIT_FAILED: out of memory. On failure there is nothing to free. */
 vit_status receivers_place(const receivers_input *in, receivers *out, vit_text *why);
 void receivers_free(receivers *r);
+/* receivers_copy.c: copies of what packs hold and of the first `placed` of `receivers`; none of followers and light. False: out
+ * of memory; there is nothing to free. */
+bool receivers_copy(const receivers *from, uint32_t placed, receivers *to);
+/* NULL: out of memory, or there is nothing. */
+void *receivers_copied(const void *from, size_t count, size_t size);
 /* Light of followers, from that of records: receivers x columns. */
 void receivers_follow(const receivers *r, float *irradiance, uint32_t columns);
 /* receiver_smooth.c: takes out what is noise: irradiance, receivers x columns, and noise, as receivers_input.look gives them.
  * False: out of memory. */
-bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns);
+bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns, unsigned threads);
 
 #endif

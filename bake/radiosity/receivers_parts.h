@@ -30,7 +30,7 @@ typedef struct placing {
     bool *met;      /* a side: by the cameras' rays */
     float (*at)[2]; /* a seen side: where the nearest of them met it, barycentric weights */
     float unseen;   /* spacing of the others, m */
-    float finest;   /* receivers along the edge of a cell that its parts may have, at most: half a pixel apart */
+    float finest;   /* receivers along the edge of a cell that its parts may have, at most: a quarter of a pixel apart */
     uint32_t step;  /* pixels between the cameras' rays, each way */
     receiver_sight *sights;
     size_t sight_count, sight_room;

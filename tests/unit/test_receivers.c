@@ -393,7 +393,7 @@ static void noise_is_smoothed_and_steps_stay(void **state) {
             stated += pass ? (double)noise[i] / (double)deviation / found.count : 0;
         }
         if (pass == 0)
-            assert_true(receivers_smooth(&found, light, noise, 1));
+            assert_true(receivers_smooth(&found, light, noise, 1, 2));
     }
     print_message("deviation %.3f before, %.3f after, %.3f stated; mean %.4f\n", sqrt(before), sqrt(after), stated, mean);
     assert_true(fabs(sqrt(before) - 1) < 0.05);
