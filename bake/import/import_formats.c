@@ -4,10 +4,12 @@
 #include "import/import_format.h"
 #include "import/obj/obj.h"
 #include "import/ply/ply.h"
+#include "import/stl/stl.h"
 #include <string.h>
 #include <strings.h>
 
-const import_format *const import_formats[] = {&gltf_format, &obj_format, &ply_format, &threemf_format, &assimp_format, NULL};
+const import_format *const import_formats[] = {&gltf_format,    &obj_format,    &ply_format, &stl_format,
+                                               &threemf_format, &assimp_format, NULL};
 
 bool import_has_suffix(const char *file, const char *suffix) {
     const size_t n = strlen(file), k = strlen(suffix);

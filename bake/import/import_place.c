@@ -311,6 +311,14 @@ void import_count_place(importer *im, size_t mesh, const char *name) {
     (void)snprintf(im->placed[mesh].name, sizeof im->placed[mesh].name, "%.*s", SCENE_NAME - 1, name);
 }
 
+void import_count_file(importer *im, size_t mesh) {
+    const char *slash = strrchr(im->file, '/'), *name = slash ? slash + 1 : im->file, *dot = strrchr(name, '.');
+    char text[SCENE_NAME];
+    (void)snprintf(text, sizeof text, "%.*s", dot && dot > name && dot - name < SCENE_NAME ? (int)(dot - name) : SCENE_NAME - 1,
+                   name);
+    import_count_place(im, mesh, text);
+}
+
 bool import_place(importer *im, size_t mesh, const mesh_part *part, const double world[12]) {
     const uint32_t before = im->m->triangles;
     if (part->vertices == 0 || part->triangles == 0)

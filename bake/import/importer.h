@@ -162,6 +162,8 @@ bool import_begin_meshes(importer *im, size_t count);
 bool import_place(importer *im, size_t mesh, const mesh_part *part, const double world[12]);
 /* Counts one more place of that mesh. */
 void import_count_place(importer *im, size_t mesh, const char *name);
+/* The same of a mesh that is called as the file is, without folder and suffix. */
+void import_count_file(importer *im, size_t mesh);
 /* Makes room in the model for so many more vertices and triangles. */
 bool import_make_room(importer *im, size_t vertices, size_t triangles);
 /* out = a b, of which the last rows are 0 0 0 1. */

@@ -80,19 +80,10 @@ static bool place_sorted(ply_file *p, uint64_t *order, uint32_t *corner, const d
     return true;
 }
 
-/* The file's name without folder and suffix. */
-static void name_mesh(importer *im) {
-    const char *slash = strrchr(im->file, '/'), *name = slash ? slash + 1 : im->file, *dot = strrchr(name, '.');
-    char text[SCENE_NAME];
-    (void)snprintf(text, sizeof text, "%.*s", dot && dot > name && dot - name < SCENE_NAME ? (int)(dot - name) : SCENE_NAME - 1,
-                   name);
-    import_count_place(im, 0, text);
-}
-
 bool ply_place(ply_file *p, const double world[12]) {
     if (!import_begin_meshes(p->im, 1))
         return false;
-    name_mesh(p->im);
+    import_count_file(p->im, 0);
     if (p->more_colors &&
         !import_not_done(p->im, "colours of faces, of which there are more than %d, are left out", PLY_COLORS - 1))
         return false;

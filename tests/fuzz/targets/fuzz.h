@@ -15,6 +15,7 @@
     X(gltf, 4096)                                                                                                              \
     X(obj, 4096)                                                                                                               \
     X(ply, 4096)                                                                                                               \
+    X(stl, 4096)                                                                                                               \
     X(3mf, 8192)
 
 #define X(name, most) void fuzz_##name(const uint8_t *data, size_t size);
