@@ -33,6 +33,9 @@ static void pass_row(void *user, uint32_t row) {
     }
     for (uint32_t c = 0; c < columns && p->albedo; c++)
         to[c] *= p->albedo[3 * (size_t)row + c % 3u];
+    for (uint32_t c = 0; c < columns && p->add;
+         c++) /* light close by took off what means add: rounding may leave less than 0 */
+        to[c] = float_max(to[c], 0.0f);
 }
 
 /* The deviation of what a row's rays brought. A ray that chance sent stands for one of all; weights below that are of rays

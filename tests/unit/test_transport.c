@@ -323,6 +323,44 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
     close_lab(&l);
 }
 
+/* Two rooms with a gap under the wall between them: most places of the dark one see lit cells, but none of their light. What
+ * cells' means and light close by add up to is 0 there, and not less. */
+static void light_is_never_less_than_none(void **state) {
+    (void)state;
+    lab l;
+    room *r = room_closed(0.5f);
+    room_quad(r, (const float[]){0.07f, -0.98f, -1}, (const float[]){0, 0, 2}, (const float[]){0, 1.98f, 0}, WALLS);
+    open_painted(&l, r);
+    const photons_light lamp = room_point_light(0.6f, -0.7f, 0.3f, 1);
+    const transport_state only = {&lamp, 1};
+    uint32_t count, dark = 0;
+    receiver *at = spread_receivers(&l, 32, &count);
+    float *irradiance = calloc(3 * (size_t)count, sizeof *irradiance);
+    assert_non_null(irradiance);
+    const transport_input in = {.rays = &l.rays,
+                                .geometry = &l.r->g,
+                                .receivers = at,
+                                .receiver_count = count,
+                                .states = &only,
+                                .state_count = 1,
+                                .reflections = 1,
+                                .cells = 256,
+                                .receiver_rays = 64,
+                                .bounce_rays = 1};
+    transport_report report;
+    vit_text why = {""};
+    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    for (uint32_t i = 0; i < 3 * count; i++) {
+        assert_true(irradiance[i] >= 0);
+        dark += irradiance[i] < 1e-6f;
+    }
+    print_message("%u of %u without light\n", dark, 3 * count);
+    assert_true(dark > 0);
+    free(irradiance);
+    free(at);
+    close_lab(&l);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_closed_room_keeps_its_light),
@@ -333,6 +371,7 @@ int main(void) {
         cmocka_unit_test(light_from_very_near_is_kept),
         cmocka_unit_test(light_of_a_spot_close_by_comes_from_where_it_is),
         cmocka_unit_test(light_does_not_get_past_walls_that_cross),
+        cmocka_unit_test(light_is_never_less_than_none),
     };
     return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
 }
