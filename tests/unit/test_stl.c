@@ -4,8 +4,7 @@
 #include "import_lab.h"
 #include "import/import_format.h"
 
-#define FACET(n, a, b, c)                                                                                                      \
-    "facet normal " n "\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
+#define FACET(n, a, b, c) "facet normal " n "\nouter loop\nvertex " a "\nvertex " b "\nvertex " c "\nendloop\nendfacet\n"
 #define FIRST FACET("0 0 1", "0 0 0", "1 0 0", "0 1 0")
 #define SECOND FACET("0 0 0", "1 0 0", "1 1 0", "0 1 0")
 #define THIRD FACET("0 0 -1", "2 0 0", "3 0 0", "2 1 0")
@@ -15,9 +14,8 @@ enum { BINARY = 84 + 3 * 50 };
 
 /* The three facets as a binary file; `header` has `length` bytes. */
 static void make_binary(uint8_t out[BINARY], const char *header, size_t length, uint32_t count, const uint16_t attribute[3]) {
-    static const float facets[3][12] = {{0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0},
-                                        {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0},
-                                        {0, 0, -1, 2, 0, 0, 3, 0, 0, 2, 1, 0}};
+    static const float facets[3][12] = {
+        {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, {0, 0, -1, 2, 0, 0, 3, 0, 0, 2, 1, 0}};
     memset(out, 0, BINARY);
     memcpy(out, header, length);
     for (size_t k = 0; k < 4; k++)
@@ -71,10 +69,11 @@ static void text_of_many_hands_is_read(void **state) {
              THIRD "endsolid a",
          NULL},
         {"solid a\n" FACET("nan(ind) -1.#IND x", "0 0 0", "1 0 0", "0 1 0") SECOND THIRD "endsolid", NULL},
-        {"solid a\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" SECOND THIRD "endsolid", NULL},
+        {"solid a\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n" SECOND THIRD "endsolid",
+         NULL},
         {"solid a\n" FIRST "color 1 0 0\n" SECOND THIRD "endsolid a\n", "line 9: 'color' and perhaps others are left out"},
-        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\ncolor 1 1 1\nendfacet\n" SECOND
-             THIRD "endsolid a\n",
+        {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\ncolor 1 1 1\n"
+         "endfacet\n" SECOND THIRD "endsolid a\n",
          "line 8: 'color' and perhaps others"},
         {"solid a\n" THREE, "ends without 'endsolid'"},
     };
@@ -83,7 +82,8 @@ static void text_of_many_hands_is_read(void **state) {
         put(FILE_OF("t.stl"), rows[i].text);
         is_three(rows[i].said);
     }
-    put_bytes(FILE_OF("t.stl"), "solid \xff\xfe\n" THREE "endsolid\n\0\0\0", sizeof "solid \xff\xfe\n" THREE "endsolid\n\0\0\0");
+    put_bytes(FILE_OF("t.stl"), "solid \xff\xfe\n" THREE "endsolid\n\0\0\0",
+              sizeof "solid \xff\xfe\n" THREE "endsolid\n\0\0\0");
     is_three(NULL); /* padded with zeros, named in some old code page */
 }
 
@@ -108,7 +108,8 @@ static void line_ends_do_not_matter(void **state) {
 static void facets_are_flat(void **state) {
     model m;
     (void)state;
-    put(FILE_OF("t.stl"), "solid a\n" FACET("0 0 1", "0 0 0", "1 0 0", "0 1 0") FACET("0 0 1", "1 0 0", "0 0 0", "0 -1 1") "endsolid\n");
+    put(FILE_OF("t.stl"),
+        "solid a\n" FACET("0 0 1", "0 0 0", "1 0 0", "0 1 0") FACET("0 0 1", "1 0 0", "0 0 0", "0 -1 1") "endsolid\n");
     import_good(FILE_OF("t.stl"), &m);
     for (size_t k = 0; k < 6; k++) {
         const float *n = m.normal + 3 * (size_t)m.index[k];
@@ -120,7 +121,8 @@ static void facets_are_flat(void **state) {
 static void each_solid_is_a_mesh_of_its_name(void **state) {
     model m;
     (void)state;
-    put(FILE_OF("t.stl"), "solid left one\n" FIRST SECOND "endsolid left one\nsolid\nendsolid\nsolid right\n" THIRD "endsolid\n");
+    put(FILE_OF("t.stl"),
+        "solid left one\n" FIRST SECOND "endsolid left one\nsolid\nendsolid\nsolid right\n" THIRD "endsolid\n");
     import_good(FILE_OF("t.stl"), &m);
     three_are(&m);
     assert_int_equal(m.mesh_count, 3);
@@ -200,7 +202,7 @@ static bool is_color(const float *a, double r, double g, double b) {
     return fabs((double)a[0] - r) < 1e-6 && fabs((double)a[1] - g) < 1e-6 && fabs((double)a[2] - b) < 1e-6;
 }
 
-#define MID 0.22927477  /* sRGB 16 / 31 */
+#define MID 0.22927477 /* sRGB 16 / 31 */
 #define EIGHTH 0.05416457
 #define FIRST_STEP 0.00249675
 
@@ -257,7 +259,8 @@ static void colours_of_facets_are_at_most_256(void **state) {
         assert_int_equal(m.material_count, count == 256 ? 256 : 1);
         assert_true(count == 256 ? warnings[0] == '\0'
                                  : strstr(warnings, "colours of facets, of which there are more than 256") != NULL);
-        assert_true(count > 256 || (is_color(albedo_at(&m, 0), 0, EIGHTH, 0) && is_color(albedo_at(&m, 255), 0, 0, FIRST_STEP)));
+        assert_true(count > 256 ||
+                    (is_color(albedo_at(&m, 0), 0, EIGHTH, 0) && is_color(albedo_at(&m, 255), 0, 0, FIRST_STEP)));
         model_free(&m);
     }
 }

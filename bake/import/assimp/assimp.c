@@ -57,8 +57,8 @@ static bool add_scene(assimp_scene *a, const scene_mesh *mesh) {
     a->im->embedded = a->ai->mNumTextures;
     if (!a->ai->mRootNode)
         return import_fail(a->im, "has no nodes");
-    return assimp_frame(a, mesh, place) && import_begin_meshes(a->im, a->ai->mNumMeshes) && assimp_transparency(a) &&
-           add_node(a, a->ai->mRootNode, place, 0) && add_strays(a, place);
+    return assimp_say_lost(a) && assimp_frame(a, mesh, place) && import_begin_meshes(a->im, a->ai->mNumMeshes) &&
+           assimp_transparency(a) && add_node(a, a->ai->mRootNode, place, 0) && add_strays(a, place);
 }
 
 static bool read_scene(assimp_scene *a, const scene_mesh *mesh) {

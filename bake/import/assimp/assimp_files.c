@@ -74,7 +74,7 @@ static void mend_text(assimp_scene *a, plain_file *f, const char *path, size_t b
     if (whole && import_has_suffix(path, ".dae"))
         size = assimp_mend_collada(a, text, size);
     else if (whole && import_has_suffix(path, ".x3d"))
-        assimp_read_x3d(a, text, size);
+        text = assimp_mend_x3d(a, text, &size);
     else if (whole)
         text = assimp_read_amf(a, text, &size);
     FILE *mended = size > 0 ? fmemopen(text, size, "rb") : NULL;

@@ -86,7 +86,15 @@ static bool read_cone(importer *im, const struct aiLight *l, model_light *out) {
     return whole < 180.001 || import_not_done(im, "light '%.100s': a cone of %.6g degrees is cut to 180", l->mName.data, whole);
 }
 
-static bool add_light(importer *im, const struct aiNode *node, const double world[12], const struct aiLight *l) {
+/* Assimp calls a light of X3D that has no name by where it lies in memory: "PointLight_94612587020304". */
+static void drop_address(const assimp_scene *a, char name[SCENE_NAME]) {
+    char *digits = strstr(name, "Light_");
+    if (digits && strcmp(assimp_reader(a), "Extensible 3D") == 0 && strspn(digits + 6, "0123456789") == strlen(digits + 6))
+        digits[5] = '\0';
+}
+
+static bool add_light(assimp_scene *a, const struct aiNode *node, const double world[12], const struct aiLight *l) {
+    importer *im = a->im;
     const double color[3] = {(double)l->mColorDiffuse.r, (double)l->mColorDiffuse.g, (double)l->mColorDiffuse.b};
     const bool directional = l->mType == aiLightSource_DIRECTIONAL, spot = l->mType == aiLightSource_SPOT;
     double place[3], along[3];
@@ -97,6 +105,7 @@ static bool add_light(importer *im, const struct aiNode *node, const double worl
                                            : VIT_LIGHT_POINT,
                        .direction = {0.0, -1.0, 0.0}};
     take_names(node, out.name, out.parent);
+    drop_address(a, out.name);
     take(&l->mPosition, place);
     take(&l->mDirection, along);
     memcpy(out.stated, color, sizeof color);
@@ -110,7 +119,7 @@ static bool add_light(importer *im, const struct aiNode *node, const double worl
 
 bool assimp_lights(assimp_scene *a, const struct aiNode *node, const double world[12]) {
     for (unsigned i = 0; i < a->ai->mNumLights; i++)
-        if (strcmp(a->ai->mLights[i]->mName.data, node->mName.data) == 0 && !add_light(a->im, node, world, a->ai->mLights[i]))
+        if (strcmp(a->ai->mLights[i]->mName.data, node->mName.data) == 0 && !add_light(a, node, world, a->ai->mLights[i]))
             return false;
     return true;
 }

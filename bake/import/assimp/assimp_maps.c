@@ -30,7 +30,10 @@ void assimp_image_name(const assimp_scene *a, const struct aiString *path, char 
         (void)snprintf(out, SCENE_PATH, "%s", path->data);
 }
 
-static uint32_t wrap_of(enum aiTextureMapMode mode) {
+/* Of X3D Assimp hands on whether it repeats, which is the other way round. */
+static uint32_t wrap_of(const assimp_scene *a, enum aiTextureMapMode mode) {
+    if (strcmp(assimp_reader(a), "Extensible 3D") == 0)
+        return mode == aiTextureMapMode_Wrap ? VIT_WRAP_CLAMP : VIT_WRAP_REPEAT;
     switch (mode) {
     case aiTextureMapMode_Clamp:
     case aiTextureMapMode_Decal:
@@ -77,8 +80,8 @@ bool assimp_color_map(assimp_scene *a, material_use *use, const struct aiMateria
             continue;
         assimp_image_name(a, &path, use->image);
         use->uv_set = set;
-        use->m.wrap_u = wrap_of(mode[0]);
-        use->m.wrap_v = wrap_of(mode[1]);
+        use->m.wrap_u = wrap_of(a, mode[0]);
+        use->m.wrap_v = wrap_of(a, mode[1]);
         if (has_map(ai, types[i], 1, &second) && strcmp(path.data, second.data) != 0 &&
             !say_once(a, ASSIMP_SAID_LAYERS, "of several colour textures only the first is shown", use->m.name))
             return false;

@@ -13,9 +13,9 @@ bool assimp_floats(const struct aiMaterial *ai, const char *key, unsigned type, 
 }
 
 /* In FBX, 3DS and ASE a texture stands in for the colour, which its exporters leave at whatever it was (3ds Max 0.588, Blender
- * 0.8, Maya 0.5); other formats multiply, or have one of the two. */
+ * 0.8, Maya 0.5), in X3D by its own word (3.3, 17.2.2.3); other formats multiply, or have one of the two. */
 static bool stands_in(const assimp_scene *a) {
-    static const char *const readers[] = {"Autodesk FBX", "Discreet 3DS", "ASE"};
+    static const char *const readers[] = {"Autodesk FBX", "Discreet 3DS", "ASE", "Extensible 3D"};
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++)
         if (strncmp(assimp_reader(a), readers[i], strlen(readers[i])) == 0)
             return true;
@@ -26,7 +26,9 @@ static void read_color(importer *im, material_use *use, const struct aiMaterial 
     float color[4] = {0.8f, 0.8f, 0.8f, 1.0f};
     if (!assimp_floats(ai, AI_MATKEY_BASE_COLOR, color, 3))
         (void)assimp_floats(ai, AI_MATKEY_COLOR_DIFFUSE, color, 3);
-    if (use->tinted && strcmp(use->m.name, AI_DEFAULT_MATERIAL_NAME) == 0) /* Assimp's own grey: the file has no material */
+    /* Assimp's own grey, where the file has no material; and X3D's vertex colours stand in for the material's. */
+    if (use->tinted &&
+        (strcmp(use->m.name, AI_DEFAULT_MATERIAL_NAME) == 0 || strcmp(assimp_reader(im->reader), "Extensible 3D") == 0))
         color[0] = color[1] = color[2] = 1.0f;
     if (use->image[0] && stands_in(im->reader)) {
         use->has_plain = true;

@@ -16,6 +16,8 @@ typedef struct polygon_cut {
 /* What is said once a file, of all its materials. */
 typedef enum assimp_remark { ASSIMP_SAID_BUMP, ASSIMP_SAID_SPECULAR, ASSIMP_SAID_TRANSFORM, ASSIMP_SAID_LAYERS } assimp_remark;
 
+enum { ASSIMP_LOST = 4 }; /* names of elements that are told of */
+
 /* A file that Assimp reads; importer.reader. */
 typedef struct assimp_scene {
     importer *im;
@@ -25,21 +27,27 @@ typedef struct assimp_scene {
     unsigned said;     /* a bit an assimp_remark */
     polygon_cut *cuts; /* a mesh of the file each */
     unsigned cut_count;
-    double unit;             /* metres that the head of an X3D file says, or 0 */
-    bool bad_unit, bad_axis; /* what the file says of them is none */
-    char amf_unit[64];       /* as the root element of an AMF file has it, or "" */
-    bool vertex_normals;     /* an FBX file has normals by vertex, which not all releases read */
-    bool amf_turns;          /* an AMF file turns instances, which Assimp takes for ways */
-    unsigned lost_nodes;     /* that were NULL in Assimp's tree */
+    double unit;                /* metres that the head of an X3D file says, or 0 */
+    bool bad_unit, bad_axis;    /* what the file says of them is none */
+    char amf_unit[64];          /* as the root element of an AMF file has it, or "" */
+    bool vertex_normals;        /* an FBX file has normals by vertex, which not all releases read */
+    bool amf_turns;             /* an AMF file turns instances, which Assimp takes for ways */
+    char lost[ASSIMP_LOST][32]; /* elements that are left out, */
+    unsigned lost_count;        /* so many or more kinds of them */
+    unsigned lost_nodes;        /* that were NULL in Assimp's tree */
 } assimp_scene;
 
 /* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
 struct aiFileIO assimp_files(assimp_scene *a);
 
-/* assimp_text.c: the text of a COLLADA file as Assimp reads it right, in place; its new size. Sets a->bad_unit, bad_axis. */
+/* assimp_text.c: the text of a COLLADA file as Assimp reads it right, in place; its new size. Sets a->bad_unit, bad_axis, lost.
+ */
 size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size);
-/* Sets a->unit, bad_unit by the text of an X3D file. */
-void assimp_read_x3d(assimp_scene *a, char *text, size_t size);
+/* assimp_x3d.c: the text of an X3D file as Assimp reads it right; `text` has been freed then. Sets a->unit, bad_unit, lost. */
+char *assimp_mend_x3d(assimp_scene *a, char *text, size_t *size);
+/* assimp_text.c: one more element of that name that is left out; says which there were. */
+void assimp_note_lost(assimp_scene *a, const char *name);
+bool assimp_say_lost(assimp_scene *a);
 
 /* assimp_tree.c: takes NULL out of the lists of Assimp's tree, or refuses it. */
 bool assimp_mend_tree(assimp_scene *a);

@@ -1,13 +1,9 @@
-/* What Assimp misreads, without a word, in the text of COLLADA and X3D files: numbers and words with white space round them,
- * which XML collapses (XML Schema, 2), and units. */
+/* What Assimp misreads, without a word, in the text of COLLADA files: numbers and words with white space round them, which XML
+ * collapses (XML Schema, 2), and units; what is left out of COLLADA and X3D. */
 #include "import/assimp/assimp_scene.h"
-#include <math.h>
+#include "import/assimp/assimp_tags.h"
 #include <stdio.h>
 #include <string.h>
-
-static bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
-}
 
 /* Without the space between tags and text: Assimp 5.2 refuses it before numbers, which Godot's exporter writes, and knows no
  * axis with it behind. */
@@ -16,9 +12,9 @@ static size_t drop_space(char *text, size_t size) {
     bool after_tag = false;
     for (size_t i = 0; i < size; i++) {
         const char c = text[i];
-        if (after_tag && is_blank(c))
+        if (after_tag && tag_blank(c))
             continue;
-        while (c == '<' && kept > 0 && is_blank(text[kept - 1]))
+        while (c == '<' && kept > 0 && tag_blank(text[kept - 1]))
             kept--;
         after_tag = c == '>';
         text[kept++] = c;
@@ -26,114 +22,68 @@ static size_t drop_space(char *text, size_t size) {
     return kept;
 }
 
-typedef struct span {
-    char *at, *end;
-} span;
-
-static bool begins(span s, const char *with) {
-    const size_t length = strlen(with);
-    return (size_t)(s.end - s.at) >= length && memcmp(s.at, with, length) == 0;
-}
-
-/* The next tag of that name in `in`, from its "<" to its ">"; comments are passed over. False: there is none. */
-static bool find_tag(span in, const char *name, span *out) {
-    const size_t length = strlen(name);
-    bool comment = false;
-    for (; in.at < in.end; in.at++) {
-        if (comment || *in.at != '<') {
-            comment = comment && !begins(in, "-->");
-            continue;
-        }
-        const span inside = {in.at + 1, in.end};
-        comment = begins(inside, "!--");
-        if (comment || !begins(inside, name) || inside.end - inside.at == (ptrdiff_t)length ||
-            !(is_blank(inside.at[length]) || strchr("/>", inside.at[length])))
-            continue;
-        char *close = memchr(in.at, '>', (size_t)(in.end - in.at));
-        *out = (span){in.at, close ? close : in.end};
-        return true;
-    }
-    return false;
-}
-
-/* The value of the tag's attribute. */
-static bool find_value(span tag, const char *name, span *out) {
-    for (span at = {tag.at + 1, tag.end}; at.at < tag.end; at.at++) {
-        if (!is_blank(at.at[-1]) || !begins(at, name))
-            continue;
-        char *c = at.at + strlen(name);
-        while (c < tag.end && is_blank(*c))
-            c++;
-        if (c == tag.end || *c != '=')
-            continue;
-        for (c++; c < tag.end && is_blank(*c); c++)
-            ;
-        if (c == tag.end || (*c != '"' && *c != '\''))
-            return false;
-        char *close = memchr(c + 1, *c, (size_t)(tag.end - c - 1));
-        *out = (span){c + 1, close ? close : tag.end};
-        return close != NULL;
-    }
-    return false;
-}
-
-/* The whole value but for blanks is a positive number, from `from` on. */
-static bool is_length(span value, char **from, double *metres) {
-    while (value.at < value.end && is_blank(*value.at))
-        value.at++;
-    while (value.at < value.end && is_blank(value.end[-1]))
-        value.end--;
-    *from = value.at;
-    return value.at < value.end && import_number(value.at, value.end, false, metres) == value.end && *metres > 0.0 &&
-           isfinite(*metres);
-}
-
-static bool is_axis(span value) {
+static bool is_axis(tag_span value) {
     return value.end - value.at == 4 && strchr("XYZ", *value.at) && memcmp(value.at + 1, "_UP", 3) == 0;
 }
 
 /* The first asset is the file's (COLLADA 1.4.1, 5-16). */
-static void read_asset(assimp_scene *a, span text) {
-    span asset, tag, value;
+static void read_asset(assimp_scene *a, tag_span text) {
+    tag_span asset, tag, value;
     char *from;
     double metres;
-    if (!find_tag(text, "asset", &asset))
+    if (!tag_find(text, "asset", &asset))
         return;
-    span inside = {asset.end, text.end}, end;
-    if (find_tag(inside, "/asset", &end))
+    tag_span inside = {asset.end, text.end}, end;
+    if (tag_find(inside, "/asset", &end))
         inside.end = end.at;
-    if (find_tag(inside, "unit", &tag) && find_value(tag, "meter", &value)) {
-        a->bad_unit = !is_length(value, &from, &metres);
+    if (tag_find(inside, "unit", &tag) && tag_value(tag, "meter", &value)) {
+        a->bad_unit = !tag_length(value, &from, &metres);
         if (!a->bad_unit && from > value.at) { /* blanks go behind the number */
             const size_t blanks = (size_t)(from - value.at);
             memmove(value.at, from, (size_t)(value.end - from));
             memset(value.end - blanks, ' ', blanks);
         }
     }
-    if (find_tag(inside, "up_axis", &tag) && tag.end < inside.end) {
-        value = (span){tag.end + 1, tag.end + 1};
+    if (tag_find(inside, "up_axis", &tag) && tag.end < inside.end) {
+        value = (tag_span){tag.end + 1, tag.end + 1};
         while (value.end < inside.end && *value.end != '<')
             value.end++;
         a->bad_axis = !is_axis(value);
     }
 }
 
-size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size) {
-    size = drop_space(text, size);
-    read_asset(a, (span){text, text + size});
-    return size;
+/* Geometry that is no mesh, of which Assimp says nothing, and skews, at which some of its releases break down. */
+static void drop_elements(assimp_scene *a, tag_span text) {
+    static const char *const names[] = {"skew", "spline", "convex_mesh", "brep"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        for (tag_span rest = text, tag; tag_find(rest, names[i], &tag);) {
+            rest.at = tag_behind(tag, names[i], text.end);
+            assimp_note_lost(a, names[i]);
+            if (i == 0)
+                memset(tag.at, ' ', (size_t)(rest.at - tag.at));
+        }
 }
 
-/* A unit of lengths in the head (X3D 3.3, 7.2.5.1). */
-void assimp_read_x3d(assimp_scene *a, char *text, size_t size) {
-    span all = {text, text + size}, tag, value;
-    char *from;
-    if (find_tag(all, "Scene", &tag))
-        all.end = tag.at;
-    while (find_tag(all, "unit", &tag)) {
-        all.at = tag.end;
-        if (!find_value(tag, "category", &value) || value.end - value.at != 6 || memcmp(value.at, "length", 6) != 0)
-            continue;
-        a->bad_unit = !find_value(tag, "conversionFactor", &value) || !is_length(value, &from, &a->unit);
-    }
+void assimp_note_lost(assimp_scene *a, const char *name) {
+    for (unsigned i = 0; i < a->lost_count && i < ASSIMP_LOST; i++)
+        if (strcmp(a->lost[i], name) == 0)
+            return;
+    if (a->lost_count < ASSIMP_LOST)
+        (void)snprintf(a->lost[a->lost_count], sizeof a->lost[0], "%s", name);
+    a->lost_count++;
+}
+
+bool assimp_say_lost(assimp_scene *a) {
+    char text[ASSIMP_LOST * (sizeof a->lost[0] + 4)] = "";
+    for (unsigned i = 0; i < a->lost_count && i < ASSIMP_LOST; i++)
+        (void)snprintf(text + strlen(text), sizeof text - strlen(text), "%s'%s'", i ? ", " : "", a->lost[i]);
+    return a->lost_count == 0 || import_not_done(a->im, "elements %s%s are left out, with all that is in them", text,
+                                                 a->lost_count > ASSIMP_LOST ? " and others" : "");
+}
+
+size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size) {
+    drop_elements(a, (tag_span){text, text + size});
+    size = drop_space(text, size);
+    read_asset(a, (tag_span){text, text + size});
+    return size;
 }
