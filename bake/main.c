@@ -174,6 +174,23 @@ static void explain_lightmap(const bake *b) {
             m->receivers.unknown, 100 * (double)m->receivers.unknown_share);
 }
 
+static void explain_cache(const bake *b) {
+    const occlusion *o = &b->packed.occlusion;
+    const vit_scene *s = &b->packed.plan.scene;
+    if (!(s->effects & VIT_BIT(OCCLUSION)))
+        return;
+    printf(
+        "  ambient light within %g m by a cache: %u cells, %.0f kB (%.0f %% full, a look-up reads %u records at most, %u cells "
+        "dropped), %u levels of boxes from %.3g m on",
+        (double)s->ambient_radius, o->cells, 1e-3 * (double)(s->cache_cells * sizeof(vit_cache_cell)),
+        100.0 * o->table.filled / s->cache_cells, o->table.longest, o->table.dropped, o->levels, (double)o->step);
+    if (s->effects & VIT_BIT(LIVE_CACHE))
+        printf("; filled while playing\n");
+    else
+        printf("; %u points, by %u rays at each of %u places, off by %.2g of all light\n", o->points, o->rays, o->places,
+               o->off);
+}
+
 static vit_status explain(bake *b, vit_text *why) {
     const pipeline *p = &b->pipeline;
     const vit_scene *s = &b->packed.plan.scene;
@@ -201,6 +218,7 @@ static vit_status explain(bake *b, vit_text *why) {
            100 * p->atlas.occupancy);
     explain_indirect(b);
     explain_lightmap(b);
+    explain_cache(b);
     if (s->effects & VIT_BIT(PHOTONS))
         printf("  indirect light by photons: %u paths a frame, %u baked photons, %u bounces, radius %g m\n", s->paths, s->baked,
                s->bounces, (double)s->radius);

@@ -3,8 +3,6 @@
  * in all frames (low half) and how many of these were open, `frame_counts` two words a point, of the frame's own. */
 
 #if VIT_WITH(LIVE_CACHE)
-#define CACHE_HALF 16 /* bits of a count; both are halved until they fit */
-
 /* Record times VIT_CACHE_POINTS plus point that the lanes' samples count for; -1: none. */
 static inline li cache_target(global const vit_scene *scene, global const uint *cells, lv3 p, lv3 n, lf distance, li lanes,
                               lu random) {
@@ -80,14 +78,12 @@ kernel void cache_sample(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const ui
     WORK_END
 }
 
-/* Adds the frame's rays to all frames', and makes records of what is known of points then. A point gets at most 2^26 rays a
- * frame, one of each sample, on top of 2^16: 32 bits hold them. */
-kernel void cache_merge(global const vit_scene *scene, global const uint *cells, global uint *frame_counts, global uint *counts,
-                        global uint *live) {
+/* Adds the frame's rays to all frames'. A point gets at most 2^26 rays a frame, one of each sample, on top of 2^16: 32 bits
+ * hold them. */
+kernel void cache_merge(global const vit_scene *scene, global uint *frame_counts, global uint *counts) {
     uint record = (uint)get_global_id(0);
     if (record >= scene->cache_cells)
         return;
-    uint word[3] = {0, 0, cells[record * 4 + 3] & VIT_CACHE_TAG};
     for (uint q = 0; q < VIT_CACHE_POINTS; q++) {
         uint point = record * VIT_CACHE_POINTS + q, before = counts[point];
         uint rays = (before & 0xffffu) + frame_counts[2 * point], open = (before >> CACHE_HALF) + frame_counts[2 * point + 1];
@@ -97,20 +93,14 @@ kernel void cache_merge(global const vit_scene *scene, global const uint *cells,
         }
         counts[point] = rays | open << CACHE_HALF;
         frame_counts[2 * point] = frame_counts[2 * point + 1] = 0;
-        if (rays > 0)
-            word[VIT_CACHE_WORD(q)] |= ((open * (uint)VIT_CACHE_STEPS + rays / 2u) / rays + VIT_CACHE_ZERO)
-                                       << VIT_CACHE_SHIFT(q);
     }
-    live[record * 4] = cells[record * 4];
-    for (uint k = 0; k < 3; k++)
-        live[record * 4 + 1 + k] = word[k];
 }
 #endif
 
 #if VIT_WITH(OCCLUSION)
 kernel void ambient_light(global const vit_scene *scene, ROUND_PARAMETERS, global const uint *hit_triangle,
                           global const float *position, global const uint *normal, global const uint *albedo,
-                          global const uint *specular, global const uint *cells, global const uint *live,
+                          global const uint *specular, global const uint *cells, global const uint *counts,
                           global float *direct WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
@@ -120,7 +110,7 @@ kernel void ambient_light(global const vit_scene *scene, ROUND_PARAMETERS, globa
         return;
     WORK_BEGIN
     lv3 p = sample_position(scene, position, first), way = lv3_sub(p, lv3_load((cameras + frame)->eye));
-    lf open = cache_open(scene, VIT_EFFECT_LIVE_CACHE ? live : cells, p, l_decode_normal(L_LOAD(normal + first)),
+    lf open = cache_open(scene, cells, VIT_EFFECT_LIVE_CACHE ? counts : 0, p, l_decode_normal(L_LOAD(normal + first)),
                          l_sqrt(lv3_dot(way, way)), hit WORK_PASS);
     open = l_sel(hit, open, L_F(0));
     lv3 all = l_decode_albedo(L_LOAD(albedo + first)), out = lv3_load_planes(direct, n, first);

@@ -56,14 +56,14 @@ static vit_status replay(vit *v, uint32_t frame, uint64_t rows, vit_text *why) {
 /* A frame has what all frames before it left, and nothing else, whatever was played before: where that is not at hand, their
  * passes of the cache run again. */
 static vit_status bring_history(vit *v, uint32_t frame, vit_text *why) {
-    static const vit_buffer buffers[] = {B_cache_frame, B_cache_counts, B_cache_live};
     vit_status status = VIT_OK;
     const bool there = v->history == frame;
     v->history = VIT_NONE; /* until the frame is done */
     if (there)
         return VIT_OK;
-    for (size_t i = 0; i < sizeof buffers / sizeof *buffers && status == VIT_OK; i++)
-        status = v->device->clear(v->state, buffers[i], why);
+    for (uint32_t b = 0; b < B_COUNT && status == VIT_OK; b++)
+        if (vit_buffer_of_history(b))
+            status = v->device->clear(v->state, (vit_buffer)b, why);
     const uint64_t rows = vit_passes_of_history(&v->launch);
     for (uint32_t f = 0; f < frame && status == VIT_OK; f++)
         status = replay(v, f, rows, why);

@@ -48,8 +48,8 @@
       B(relit), B(indirect), B(map_sides), B(map_cells), B(map_splits), B(map_receivers), B(by_rays), B(reached), ARGS_WORK)   \
     X(cache_sample, ON(LIVE_CACHE), FIRST, PER_SAMPLE, ONCE, W(cache_frame), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),           \
       B(position), B(normal), B(cache), B(cache_counts), B(cache_frame), ARGS_WORK)                                            \
-    X(cache_merge, ON(LIVE_CACHE), FIRST, PER_CACHE_CELL, ONCE, W(cache_frame) | W(cache_counts) | W(cache_live), B(scene),    \
-      B(cache), B(cache_frame), B(cache_counts), B(cache_live))                                                                \
+    X(cache_merge, ON(LIVE_CACHE), FIRST, PER_CACHE_CELL, ONCE, W(cache_frame) | W(cache_counts), B(scene), B(cache_frame),    \
+      B(cache_counts))                                                                                                         \
     X(direct_light, ON(LIGHTS), EACH, PER_BUNDLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(lights), B(hit_triangle),          \
       B(position), B(normal), B(albedo), B(rays), B(specular), B(direct), ARGS_WORK)                                           \
     X(lightmap_rays, ON(LIGHTMAP_RAYS), EACH, PER_SAMPLE, ONCE, W(direct), ARGS_RAYS, ARGS_ROUND, B(area_lights),              \
@@ -61,7 +61,7 @@
     X(sky_filter, ON_SKY_RAYS, EACH, PER_SAMPLE, ONCE, W(direct), B(scene), B(position), B(normal), B(albedo), B(specular),    \
       B(skylight), B(direct))                                                                                                  \
     X(ambient_light, ON(OCCLUSION), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(hit_triangle), B(position),     \
-      B(normal), B(albedo), B(specular), B(cache), B(cache_live), B(direct), ARGS_WORK)                                        \
+      B(normal), B(albedo), B(specular), B(cache), B(cache_counts), B(direct), ARGS_WORK)                                      \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters), B(scene), V(round), B(masks), B(counters))  \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(lights), V(frame), B(sides),     \
       B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                                                                \

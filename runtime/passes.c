@@ -149,6 +149,10 @@ uint64_t vit_passes_of_history(const vit_launch *l) {
     return rows;
 }
 
+int vit_buffer_of_history(uint32_t buffer) {
+    return buffer_when[buffer] == ON(LIVE_CACHE);
+}
+
 static uint32_t level_words(const vit_scene *s, uint32_t level) {
     return (level + 1 < s->levels ? s->level_first[level + 1] : s->mask_words) - s->level_first[level];
 }

@@ -87,7 +87,6 @@ typedef struct vit_launch {
     X(normal, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(albedo, ALWAYS, NONE, (uint64_t)s->samples * 4)                                                                          \
     X(direct, ALWAYS, NONE, (uint64_t)s->samples * 12)                                                                         \
-    X(cache_live, ON(LIVE_CACHE), NONE, s->cache_cells * sizeof(vit_cache_cell))                                               \
     X(cache_counts, ON(LIVE_CACHE), NONE, (uint64_t)s->cache_cells *VIT_CACHE_POINTS * 4)                                      \
     X(cache_frame, ON(LIVE_CACHE), NONE, (uint64_t)s->cache_cells *VIT_CACHE_POINTS * 8)                                       \
     X(specular, ON(SPECULAR), NONE, (uint64_t)s->samples * 8)                                                                  \
@@ -242,6 +241,8 @@ int vit_view_light(vit_view view);
 /* Rows, as bits, whose results later frames find in buffers of the effect live-cache: what fills them, and what that reads, in
  * the first round. */
 uint64_t vit_passes_of_history(const vit_launch *l);
+/* Is the buffer that effect's alone? What such buffers hold is history. */
+int vit_buffer_of_history(uint32_t buffer);
 
 /* Work-items a work-group, and in all, of a pass at a level. */
 void vit_pass_size(const vit_pass *p, const vit_scene *s, const vit_launch *l, uint32_t level, size_t *local, size_t *global);

@@ -27,7 +27,7 @@
     X(sky_filter, (z->position + 4 + 4 + z->specular / 2 + z->skylight + 12 + 12) * z->samples)                                \
     X(ambient_light, (4 + z->position + 4 + 4 + z->specular / 2 + 12 + 12) * z->samples + 4 * w[VIT_WORK_evaluations])         \
     X(cache_sample, (4 + z->position + 4 + z->face) * z->samples + (12 + 8) * w[VIT_WORK_shadow_rays])                         \
-    X(cache_merge, (2 * 16 + 8 * (2 * 8 + 2 * 4)) * z->cached)                                                                 \
+    X(cache_merge, 8 * (2 * 8 + 2 * 4) * z->cached)                                                                            \
     X(clear_masks, 4 * z->masks)                                                                                               \
     X(photon_paths, sizeof(vit_photon) * z->traced + z->lights + z->cell * w[VIT_WORK_surface_points] + HITS)                  \
     X(cluster_keys, (4 + z->position + 4 + 4 + 4) * z->samples + 4 * z->masks)                                                 \

@@ -31,6 +31,7 @@ typedef struct host_lab_mesh {
     X(cosine, 5, 3)                                                                                                            \
     X(place, 3, 2)                                                                                                             \
     X(normal, 1, 3)                                                                                                            \
+    X(choose, 4, 1)                                                                                                            \
     X(srgb, 1, 1)                                                                                                              \
     X(cone, 3, 1)                                                                                                              \
     X(falloff, 1, 1)                                                                                                           \
@@ -100,8 +101,9 @@ typedef struct host_lab {
     void (*weights)(const host_lab_mesh *m, const float *rays, const float *distance, const uint32_t *triangle, uint32_t n,
                     float *b1_b2, int32_t *back);
     /* Open parts, 0..1, that a cache says of places: planes of position, unit normal, distance from the eye (negative: no
-     * place, 1). s: cache_* of it. */
-    void (*open)(const vit_scene *s, const vit_cache_cell *cells, const float *places, uint32_t n, float *open);
+     * place, 1). s: cache_* of it. counts: the buffer cache_counts, or NULL: baked. */
+    void (*open)(const vit_scene *s, const vit_cache_cell *cells, const uint32_t *counts, const float *places, uint32_t n,
+                 float *open);
     /* The product with a coded transfer matrix, of kernels/transfer_product.clh, which has the layout of what is between. */
     void (*transfer)(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y);
 } host_lab;

@@ -141,6 +141,11 @@ static void call_sampling(host_lab_function f, const float *in, uint n, uint i, 
     case HOST_LAB_normal:
         OUT3(l_decode_normal(L_AS_UINT(IN(0))), 0);
         break;
+    case HOST_LAB_choose: {
+        const cache_nearest near = {{IN(0), IN(1), IN(2)}, {L_I(0)}, {L_I(0)}};
+        OUT(L_FROM_INT(cache_choose(&near, IN(3))), 0);
+        break;
+    }
     default:
         OUT(srgb_curve(IN(0)), 0);
     }
@@ -206,9 +211,10 @@ static void call(host_lab_function f, const host_lab_given *given, const float *
             call_light(f, given, in, n, i, out);
 }
 
-static void open_parts(const vit_scene *s, const vit_cache_cell *cells, const float *in, uint32_t n, float *out) {
+static void open_parts(const vit_scene *s, const vit_cache_cell *cells, const uint32_t *counts, const float *in, uint32_t n,
+                       float *out) {
     for (uint i = 0; i < n; i += VIT_LANES) {
-        OUT(cache_open(s, (const uint *)cells, IN3(0), IN3(3), IN(6), L_GE(IN(6), L_F(0))), 0);
+        OUT(cache_open(s, (const uint *)cells, counts, IN3(0), IN3(3), IN(6), L_GE(IN(6), L_F(0))), 0);
     }
 }
 

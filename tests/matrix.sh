@@ -8,8 +8,8 @@
 set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
 mkdir -p "$out" && out=$(cd "$out" && pwd)
-packs="list zones buckets atrium shine basis basis-still basis-shine live-float32 live-float16 live-log8 live-bc1 live-sparse live-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine live-bc1 live-sparse" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
-if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis tiny-live-sparse" strict_packs="zones basis live-sparse" widths=8 threads_tried=2 devices=pthread; fi
+packs="list zones buckets atrium shine basis basis-still basis-shine progressive-shine live-float32 live-float16 live-log8 live-bc1 live-sparse live-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine progressive-shine live-bc1 live-sparse" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
+if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis tiny-progressive-shine tiny-live-sparse" strict_packs="zones basis live-sparse" widths=8 threads_tried=2 devices=pthread; fi
 row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
     label=$1 && shift
     rows=$((rows + 1))
@@ -69,7 +69,9 @@ EOF
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/basis-shine.vit" --quiet --no-check --device host $basis || exit 1
 [ "${VITRINE_MATRIX:-}" = smoke ] ||
     "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/live-shine.vit" --quiet --no-check --device host $live || exit 1
-"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-progressive-shine.vit" --quiet --no-check --device host $tiny $basis --cache progressive || exit 1
+# A table that fills while playing, beside light of the sky and of the lamp that is baked.
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/progressive-shine.vit" --quiet --no-check --device host $basis --cache progressive --lightmap baked || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-progressive-shine.vit" --quiet --no-check --device host $tiny $basis --cache progressive --lightmap baked || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-basis-shine.vit" --quiet --no-check --device host $tiny $basis || exit 1
 
 play="$tools/vitrine-play --verify --quiet"

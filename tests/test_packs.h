@@ -90,6 +90,12 @@ static const struct {
     {"bodies.obj", test_packs_bodies},
     {"bodies.mtl", test_packs_bodies_materials},
     {"shine.cfg", SPECULAR_SCENE},
+    {"open.cfg", "meshes = ( { file = \"room.obj\"; } );\nambient = [0.5, 0.6, 0.7]; ambient_radius = 0.8;\n"
+                 "background = [0.2, 0.3, 0.4]; sky: { light = true; };\n"
+                 "materials = ( { name = \"lamp\"; area_light = true; } );\noutput: { width = 48; height = 33; frames = 4; };\n"
+                 "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; },"
+                 " { time = 0.2; eye = [0.3, 1.2, 2.5]; target = [0.0, 1.0, 0.0]; } ); };\n"
+                 "quality: { indirect = \"photons\"; photons = 0; tile = 8; cache_error = 0.1; };\n"},
     {"lamp.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW("")},
 };
 
@@ -152,6 +158,7 @@ static const struct {
 #undef LIVE
 #undef PLAIN
     {"shine", TEST_PACKS "/shine.cfg", "--all-formats"},
+    {"progressive", TEST_PACKS "/open.cfg", "--cache progressive --lightmap baked"},
     {"lamp", TEST_PACKS "/lamp.cfg", ""},
     {"mesh", TEST_PACKS "/room.obj", "--indirect photons --size 96x64 --frames 2 --photons 2000"},
     {"by-default", TEST_PACKS "/room.obj", "--size 97x63 --frames 2"}, /* nothing stated */

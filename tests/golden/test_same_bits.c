@@ -105,6 +105,7 @@ static const struct {
     {"list", ALL_WAYS},
     {"room", ALL_WAYS},
     {"live", ALL_WAYS},
+    {"progressive", ALL_WAYS},
     {"buckets", ONE_LANE},
     {"normal-keys", ONE_LANE | SIXTEEN_LANES},
     {"sparse", EIGHT_LANES},
@@ -217,6 +218,12 @@ static void a_frame_hashes_the_same_however_it_is_played(void **state) {
     make_caches();
     assert_pack_alike("list", "--verify --hash");
     assert_all_alike(test_pack("list"), "--verify --hash", rare, COUNT(rare));
+}
+
+/* The table that frames fill has the same contents after each: traces hash what rays were counted for it. */
+static void a_cache_that_fills_has_the_same_contents(void **state) {
+    (void)state;
+    assert_pack_alike("progressive", "--trace");
 }
 
 #define ALIKE(name, pack)                                                                                                      \
@@ -338,6 +345,7 @@ int main(void) {
         cmocka_unit_test(every_effect_meets_every_way),
         cmocka_unit_test(a_frame_hashes_the_same_however_it_is_played),
         cmocka_unit_test(the_device_host_gives_the_bits_of_opencl),
+        cmocka_unit_test(a_cache_that_fills_has_the_same_contents),
         cmocka_unit_test(buckets_hash_the_same),
         cmocka_unit_test(raw_buckets_hash_the_same),
         cmocka_unit_test(flattened_photons_hash_the_same),

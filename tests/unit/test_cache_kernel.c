@@ -89,7 +89,7 @@ static void fill(lab *l, uint32_t (*code)(uint32_t point), uint32_t hole) {
     free(cells);
     l->scene.cache_cells = l->table.count;
     l->scene.cache_probes = l->table.longest;
-    host_lab_find()->open(&l->scene, l->table.records, l->places, PLACES, l->open);
+    host_lab_find()->open(&l->scene, l->table.records, NULL, l->places, PLACES, l->open);
 }
 
 static void close_lab(lab *l) {
@@ -161,6 +161,56 @@ static void where_nothing_is_known_it_is_open(void **state) {
     close_lab(l);
 }
 
+/* Rays of a point, from none to as many as are kept, and how many of them were open. */
+static uint32_t any_rays(uint32_t record_point) {
+    const uint32_t random = pcg(record_point ^ 77u);
+    return random % 5 == 0 ? 0 : random % 5 == 1 ? 0xffffu : random >> 8 & 31u;
+}
+
+static uint32_t any_open(uint32_t record_point) {
+    return any_rays(record_point) * (pcg(record_point) & 15u) / 15u;
+}
+
+/* What a place's points have seen, each by its rays over 4 more; NAN: nothing. */
+static double expected_live(const lab *l, uint32_t row) {
+    double sum = 0.0, weight = 0.0;
+    for (size_t i = l->met.first[row]; i < l->met.first[row + 1]; i++) {
+        const uint32_t point = l->met.reads[i].point, q = point % VIT_CACHE_POINTS;
+        const cache_cell *c = &l->met.cells[point / VIT_CACHE_POINTS];
+        const uint32_t at = cache_table_find(&l->table, cache_key(cache_seed(c->at, c->level), c->side), cache_tag(c->at)),
+                       rays = any_rays(at * VIT_CACHE_POINTS + q), open = any_open(at * VIT_CACHE_POINTS + q);
+        assert_int_not_equal(at, VIT_NONE);
+        sum += (double)l->met.reads[i].weight * open / (rays + 4.0);
+        weight += (double)l->met.reads[i].weight * rays / (rays + 4.0);
+    }
+    return weight > 0.0 ? sum / weight : NAN;
+}
+
+static void a_point_counts_by_its_rays_where_they_are_found_while_playing(void **state) {
+    (void)state;
+    lab *l = open_lab(0.37f, 4, 12.0f);
+    fill(l, code_of_half, 0);
+    const uint32_t points = l->table.count * VIT_CACHE_POINTS;
+    uint32_t *counts = malloc(points * sizeof *counts), known = 0;
+    assert_non_null(counts);
+    for (uint32_t i = 0; i < points; i++)
+        counts[i] = any_rays(i) | any_open(i) << 16;
+    host_lab_find()->open(&l->scene, l->table.records, counts, l->places, PLACES, l->open);
+    for (uint32_t i = 0; i < PLACES; i++) {
+        const double e = expected_live(l, i);
+        known += isfinite(e);
+        if (isfinite(e) && !(fabs(e - (double)l->open[i]) < 2e-4))
+            fail_msg("place %u: %g, expected %g", i, (double)l->open[i], e);
+    }
+    assert_in_range(known, PLACES - PLACES / 100, PLACES);
+    memset(counts, 0, points * sizeof *counts); /* no ray yet */
+    host_lab_find()->open(&l->scene, l->table.records, counts, l->places, PLACES, l->open);
+    for (uint32_t i = 0; i < PLACES; i++)
+        assert_true(l->open[i] == 1.0f);
+    free(counts);
+    close_lab(l);
+}
+
 /* A place that goes away from the eye: cells of all levels about it know something. */
 static void levels_change_without_a_jump(void **state) {
     (void)state;
@@ -207,9 +257,12 @@ static void a_place_on_a_point_is_finite(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_kernel_reads_what_the_baker_wrote), cmocka_unit_test(what_all_points_agree_upon_is_so_everywhere),
-        cmocka_unit_test(where_nothing_is_known_it_is_open),     cmocka_unit_test(levels_change_without_a_jump),
+        cmocka_unit_test(the_kernel_reads_what_the_baker_wrote),
+        cmocka_unit_test(what_all_points_agree_upon_is_so_everywhere),
+        cmocka_unit_test(where_nothing_is_known_it_is_open),
+        cmocka_unit_test(levels_change_without_a_jump),
         cmocka_unit_test(a_place_on_a_point_is_finite),
+        cmocka_unit_test(a_point_counts_by_its_rays_where_they_are_found_while_playing),
     };
     return cmocka_run_group_tests_name("cache kernel", tests, NULL, NULL);
 }
