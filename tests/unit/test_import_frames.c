@@ -156,6 +156,13 @@ static void units_and_axes_of_collada_that_are_none_are_told(void **state) {
 
 /* ---- AMF ---- */
 
+#define AMF_POINT(x, y) "<vertex><coordinates><x>" #x "</x><y>" #y "</y><z>0</z></coordinates></vertex>"
+/* A file of one triangle; `before` and `behind` its object. */
+#define AMF(attributes, before, volume, behind)                                                                                \
+    "<?xml version=\"1.0\"?>\n<amf " attributes ">" before "<object id=\"1\"><mesh><vertices>" AMF_POINT(0, 0) AMF_POINT(1, 0) \
+        AMF_POINT(0, 1) "</vertices><volume" volume                                                                            \
+                        "><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object>" behind "</amf>"
+
 /* An archive of that text alone. */
 static void put_zip(const char *path, const char *text) {
     int error;
@@ -166,12 +173,7 @@ static void put_zip(const char *path, const char *text) {
 }
 
 static void files_of_amf_are_in_their_unit(void **state) {
-    static const char amf[] =
-        "<?xml version=\"1.0\"?>\n<amf %s><object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y>"
-        "<z>0</z></coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>"
-        "<vertex><coordinates>"
-        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
-        "</volume></mesh></object></amf>";
+    static const char amf[] = AMF("%s", "", "", "");
     char text[1024];
     model m;
     (void)state;
@@ -200,12 +202,8 @@ static void files_of_amf_are_in_their_unit(void **state) {
 static void a_colour_of_amf_is_all_of_it(void **state) {
     model m;
     (void)state;
-    put(FILE_OF("t.amf"),
-        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><material id=\"2\"><color><r>1</r><g>0.5</g><b>0</b></color></material>"
-        "<object id=\"1\"><mesh><vertices><vertex><coordinates><x>0</x><y>0</y><z>0</z>"
-        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
-        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume materialid=\"2\"><triangle><v1>0</v1><v2>1</v2>"
-        "<v3>2</v3></triangle></volume></mesh></object></amf>");
+    put(FILE_OF("t.amf"), AMF("unit=\"meter\"", "<material id=\"2\"><color><r>1</r><g>0.5</g><b>0</b></color></material>",
+                              " materialid=\"2\"", ""));
     import_good(FILE_OF("t.amf"), &m);
     assert_true(m.materials[0].albedo[0] == 1.0f && m.materials[0].albedo[1] == 0.5f && m.materials[0].albedo[2] == 0.0f);
     model_free(&m);
@@ -213,13 +211,9 @@ static void a_colour_of_amf_is_all_of_it(void **state) {
 
 /* Two of a triangle in a constellation, the second 5 m along x and turned by 90 degrees about z, or by none. */
 static void instances_of_amf_stand_where_they_should_or_are_refused(void **state) {
-    static const char amf[] =
-        "<?xml version=\"1.0\"?>\n<amf unit=\"meter\"><object id=\"1\"><mesh><vertices>"
-        "<vertex><coordinates><x>0</x><y>0</y><z>0</z>"
-        "</coordinates></vertex><vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex><vertex><coordinates>"
-        "<x>0</x><y>1</y><z>0</z></coordinates></vertex></vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>"
-        "</volume></mesh></object><constellation id=\"2\"><instance objectid=\"1\"><deltax>0</deltax></instance>"
-        "<instance objectid=\"1\"><deltax>5</deltax><rz> %s</rz></instance></constellation></amf>";
+    static const char amf[] = AMF("unit=\"meter\"", "", "",
+                                  "<constellation id=\"2\"><instance objectid=\"1\"><deltax>0</deltax></instance>"
+                                  "<instance objectid=\"1\"><deltax>5</deltax><rz> %s</rz></instance></constellation>");
     char text[1024];
     model m;
     (void)state;

@@ -53,9 +53,10 @@ static void pictures_are_found_in_lists_of_names(void **state) {
 static void a_picture_that_is_missing_is_called_by_its_first_name(void **state) {
     model m;
     (void)state;
-    import_x3d(SHAPE("<Appearance><ImageTexture url='\"first.tga\" \"second.tga\"'/><Material diffuseColor=\"1 0 0\"/></Appearance>",
-                     FACE),
-               "texture 'first.tga' is missing", &m);
+    import_x3d(
+        SHAPE("<Appearance><ImageTexture url='\"first.tga\" \"second.tga\"'/><Material diffuseColor=\"1 0 0\"/></Appearance>",
+              FACE),
+        "texture 'first.tga' is missing", &m);
     assert_true(m.materials[0].image == -1 && near3(m.materials[0].albedo, 1, 0, 0));
     model_free(&m);
 }
@@ -107,8 +108,9 @@ static void lines_are_no_faces(void **state) {
 static void elements_that_are_not_known_are_said(void **state) {
     model m;
     (void)state;
-    import_x3d("<WorldInfo title=\"t\"/><NavigationInfo/><TimeSensor/><PositionInterpolator/><MetadataString/>" SHAPE(RED, FACE),
-               NULL, &m);
+    import_x3d(
+        "<WorldInfo title=\"t\"/><NavigationInfo/><TimeSensor/><PositionInterpolator/><MetadataString/>" SHAPE(RED, FACE), NULL,
+        &m);
     model_free(&m);
     import_x3d("<LOD>" SHAPE(RED, "<Box/>") "</LOD><LOD/>" SHAPE(RED, FACE),
                "elements 'LOD' are left out, with all that is in them", &m);

@@ -1,6 +1,6 @@
 /* The archive: a ZIP file, in ZIP64 or not, whose relations name the model (Open Packaging Conventions). */
 #include "import/3mf/threemf_file.h"
-#include "import/image_file.h"
+#include "import/import_zip.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,25 +57,6 @@ bool threemf_find_root(threemf_file *f, uint32_t *path) {
 
 /* ---- pictures ---- */
 
-/* All of it, in steps: sizes that the archive states are not believed. */
-static uint8_t *read_whole(zip_file_t *from, size_t *size) {
-    uint8_t *bytes = NULL;
-    zip_int64_t got = 1;
-    *size = 0;
-    for (size_t room = 1 << 16; got > 0 && room <= IMAGE_FILE_MOST; room *= 2) {
-        uint8_t *grown = realloc(bytes, room);
-        if (!grown)
-            break;
-        bytes = grown;
-        while (*size < room && (got = zip_fread(from, bytes + *size, room - *size)) > 0)
-            *size += (size_t)got;
-    }
-    if (got == 0)
-        return bytes;
-    free(bytes);
-    return NULL;
-}
-
 const char *threemf_image(importer *im, unsigned index, model_image *out) {
     threemf_file *f = im->reader;
     const char *wrong;
@@ -85,7 +66,7 @@ const char *threemf_image(importer *im, unsigned index, model_image *out) {
     zip_file_t *file = threemf_open_part(f, f->text + f->groups[index].path, &wrong);
     if (!file)
         return wrong;
-    uint8_t *bytes = read_whole(file, &size);
+    uint8_t *bytes = import_unzipped(file, &size);
     (void)zip_fclose(file);
     wrong = bytes ? import_decode(im, bytes, size, out) : "is damaged, or too long";
     free(bytes);

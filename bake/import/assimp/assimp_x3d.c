@@ -54,8 +54,8 @@ static bool next_name(tag_span *rest, tag_span *name) {
     return name->end > name->at;
 }
 
-/* Names of one file in order of preference (X3D 3.3, 9.2.1): the first that is there, or the first of all. Assimp takes them for
- * one name. */
+/* Names of one file in order of preference (X3D 3.3, 9.2.1): the first that is there, or the first of all. Assimp takes them
+ * for one name. */
 static void write_names(written *w, tag_span tag) {
     tag_span value, first, name;
     if (!tag_value(tag, "url", &value) || value.at == value.end) {
@@ -143,8 +143,8 @@ static void name_of(tag_span tag, char out[32]) {
 /* What is written of the tag, which ends before its ">"; where to go on. */
 static char *write_tag(written *w, tag_span tag, char *end) {
     /* Assimp has some of them as surfaces. */
-    static const char *const wires[] = {"IndexedLineSet", "LineSet",      "PointSet",    "Arc2D",
-                                        "Circle2D",       "Polyline2D",   "Polypoint2D", NULL};
+    static const char *const wires[] = {"IndexedLineSet", "LineSet",    "PointSet",    "Arc2D",
+                                        "Circle2D",       "Polyline2D", "Polypoint2D", NULL};
     char name[32];
     tag_span inside;
     name_of(tag, name);
