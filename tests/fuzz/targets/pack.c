@@ -4,6 +4,7 @@
  *   chain N             begin from a deep tree of N nodes rather than from the cube
  *   basis               begin from the cube with receivers and a basis rather than with photons
  *   live                begin from the cube with receivers and patches
+ *   lightmap            begin from the cube with a lightmap, part of which is left to rays
  *   plain               leave META's derived fields and the sections' sizes as they were: otherwise they follow META's counts
  *   CODE INDEX = HEX    word INDEX of section CODE (modulo its words); "+" adds, "^" flips bits
  *   HEAD, TABL, FILE    instead of CODE: the header, the section table, the whole file
@@ -43,7 +44,7 @@ typedef struct script {
     edit edits[MAX_EDITS];
     int count;
     uint32_t chain, cut;
-    bool basis, live, plain, kept;
+    bool basis, live, lightmap, plain, kept;
 } script;
 
 /* ---- reading a script ---- */
@@ -55,6 +56,7 @@ static void read_line(script *s, const char *line) {
         return;
     s->basis |= strcmp(line, "basis") == 0;
     s->live |= strcmp(line, "live") == 0;
+    s->lightmap |= strcmp(line, "lightmap") == 0;
     s->plain |= strcmp(line, "plain") == 0;
     s->kept |= strcmp(line, "kept") == 0;
     if (s->count == MAX_EDITS || sscanf(line, "%4s %u %c %x", code, &e.index, &e.how, &e.value) != 4)
@@ -469,6 +471,8 @@ void fuzz_pack(const uint8_t *data, size_t size) {
         fixture_make_live(f);
     else if (s.basis)
         fixture_make_basis(f);
+    else if (s.lightmap)
+        fixture_make_lightmap(f);
     else
         fixture_make(f);
     vit_pack_derive(&f->scene, NULL);

@@ -26,7 +26,13 @@ static const char codes[][5] = {
     "GATH",
     "LOOK",
     "XFER",
+    "CACH",
+    "MSID",
+    "MCEL",
+    "MSPL",
 };
+
+static const char *const bases[] = {"basis", "live", "lightmap"};
 
 static const uint32_t values[] = {
     0,          1,          2,          3,          0x10,       0x40,       0xff,       0x1000,
@@ -62,7 +68,7 @@ static int new_line(char *line, size_t room, uint64_t *state) {
     if (kind == 0)
         return snprintf(line, room, "chain %u\n", 1 + next(state) % 95);
     if (kind == 3)
-        return snprintf(line, room, next(state) % 2 ? "basis\n" : "live\n");
+        return snprintf(line, room, "%s\n", bases[next(state) % (sizeof bases / sizeof bases[0])]);
     if (kind == 1)
         return snprintf(line, room, next(state) % 2 ? "plain\n" : "kept\n");
     if (kind == 2)
