@@ -149,6 +149,44 @@ static void what_collada_says_and_is_left_out_is_said(void **state) {
     }
 }
 
+#define DAE_PAINT                                                                                                              \
+    "<library_effects><effect id=\"e\"><profile_COMMON><technique sid=\"t\"><lambert><diffuse><color>1 0 0 1</color>"          \
+    "</diffuse></lambert></technique></profile_COMMON></effect></library_effects><library_materials>"                          \
+    "<material id=\"-\"><instance_effect url=\"#e\"/></material></library_materials>"
+
+/* Its triangles are of no material; "-" is one of the ids that come first. */
+static void a_mesh_of_collada_without_a_material_is_not_the_first_ones_colour(void **state) {
+    model m;
+    (void)state;
+    put_dae_with(DAE_UNIT("1", "Y"), "0 0 0 1 0 0 0 1 0", DAE_PAINT, "");
+    import_good(FILE_OF("t.dae"), &m);
+    assert_int_equal(m.material_count, 1);
+    assert_string_equal(m.materials[0].name, "DefaultMaterial");
+    assert_true(near3(m.materials[0].albedo, 0.6, 0.6, 0.6));
+    model_free(&m);
+}
+
+static void colours_in_off_are_said_to_be_left_out(void **state) {
+    static const char *const rows[][2] = {
+        {"OFF\n# c\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n", "colours of vertices and faces are left out"},
+        {"OFF\n3 2 0\n0 0 0\n\n1 0 0\n0 1 0\n3  0 1 2 \n3 0 2 1 # c\n", ""},
+        {"COFF\n3 1 0\n0 0 0 9 9 9 9\n1 0 0 9 9 9 9\n0 1 0 9 9 9 9\n3 0 1 2\n", "colours of vertices and faces are left out"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        model m;
+        put(FILE_OF("t.off"), rows[i][0]);
+        import_good(FILE_OF("t.off"), &m);
+        box_is(&m, 0, 0, 0, 1, 1, 0);
+        assert_true(near3(m.materials[0].albedo, 0.6, 0.6, 0.6));
+        model_free(&m);
+        if (rows[i][1][0] ? !strstr(warnings, rows[i][1]) : warnings[0] != '\0')
+            fail_msg("%zu: '%s'", i, warnings);
+    }
+    put(FILE_OF("t.off"), rows[0][0]);
+    refuse(FILE_OF("t.off"), true, rows[0][1]);
+}
+
 #define DAE_SPOT(rest)                                                                                                         \
     "<library_lights><light id=\"l\" name=\"lamp\"><technique_common><spot><color>1 1 1</color>" rest                          \
     "</spot></technique_common></light></library_lights>"
@@ -272,6 +310,8 @@ int main(void) {
         T(a_picture_stands_in_for_the_colour_in_fbx),
         T(maps_of_other_things_are_said_to_be_left_out),
         T(collada_lists_may_begin_with_space),
+        T(a_mesh_of_collada_without_a_material_is_not_the_first_ones_colour),
+        T(colours_in_off_are_said_to_be_left_out),
         T(what_collada_says_and_is_left_out_is_said),
         T(spots_of_collada_have_one_angle),
         T(cameras_of_collada_keep_their_fields_of_view),

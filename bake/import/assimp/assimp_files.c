@@ -61,9 +61,10 @@ static FILE *open_plain(const char *path, size_t *size) {
     return file;
 }
 
-/* Formats whose text is read and mended here before Assimp sees it. */
+/* Formats whose text is read, and mended, here before Assimp sees it. */
 static bool is_mended(const char *path) {
-    return import_has_suffix(path, ".dae") || import_has_suffix(path, ".x3d") || import_has_suffix(path, ".amf");
+    return import_has_suffix(path, ".dae") || import_has_suffix(path, ".x3d") || import_has_suffix(path, ".amf") ||
+           import_has_suffix(path, ".off");
 }
 
 /* That text in memory, as Assimp can read it. What cannot be had so stays the file as it is. */
@@ -72,9 +73,11 @@ static void mend_text(assimp_scene *a, plain_file *f, const char *path, size_t b
     size_t size = text ? fread(text, 1, bytes, f->file) : 0;
     const bool whole = size > 0 && size == bytes;
     if (whole && import_has_suffix(path, ".dae"))
-        size = assimp_mend_collada(a, text, size);
+        text = assimp_mend_collada(a, text, &size);
     else if (whole && import_has_suffix(path, ".x3d"))
         text = assimp_mend_x3d(a, text, &size);
+    else if (whole && import_has_suffix(path, ".off"))
+        assimp_read_off(a, text, size);
     else if (whole)
         text = assimp_read_amf(a, text, &size);
     FILE *mended = size > 0 ? fmemopen(text, size, "rb") : NULL;

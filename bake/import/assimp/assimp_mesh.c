@@ -68,7 +68,7 @@ bool assimp_place(assimp_scene *a, unsigned index, const double world[12]) {
                       .vertices = mesh->mNumVertices,
                       .position = {floats_of(mesh->mVertices), 3},
                       .normal = {floats_of(mesh->mNormals), 3},
-                      .color = {colors_of(mesh), 4},
+                      .color = {a->off_colors ? NULL : colors_of(mesh), 4},
                       .v_up = true, /* Assimp has it so for every format */
                       .material = mesh->mMaterialIndex};
     for (int i = 0; i < IMPORT_UV_SETS && i < AI_MAX_NUMBER_OF_TEXTURECOORDS; i++)

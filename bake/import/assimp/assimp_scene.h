@@ -31,6 +31,7 @@ typedef struct assimp_scene {
     bool bad_unit, bad_axis;    /* what the file says of them is none */
     char amf_unit[64];          /* as the root element of an AMF file has it, or "" */
     bool vertex_normals;        /* an FBX file has normals by vertex, which not all releases read */
+    bool off_colors;            /* an OFF file has some, which are left out */
     bool amf_turns;             /* an AMF file turns instances, which Assimp takes for ways */
     char lost[ASSIMP_LOST][32]; /* elements that are left out, */
     unsigned lost_count;        /* so many or more kinds of them */
@@ -40,9 +41,11 @@ typedef struct assimp_scene {
 /* assimp_files.c: what Assimp reads files through; `a` must outlive it. */
 struct aiFileIO assimp_files(assimp_scene *a);
 
-/* assimp_text.c: the text of a COLLADA file as Assimp reads it right, in place; its new size. Sets a->bad_unit, bad_axis, lost.
- */
-size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size);
+/* assimp_text.c: the text of a COLLADA file as Assimp reads it right; `text` has been freed then. Sets a->bad_unit, bad_axis,
+ * lost. */
+char *assimp_mend_collada(assimp_scene *a, char *text, size_t *size);
+/* assimp_off.c: sets a->off_colors. */
+void assimp_read_off(assimp_scene *a, const char *text, size_t size);
 /* assimp_x3d.c: the text of an X3D file as Assimp reads it right; `text` has been freed then. Sets a->unit, bad_unit, lost. */
 char *assimp_mend_x3d(assimp_scene *a, char *text, size_t *size);
 /* assimp_text.c: one more element of that name that is left out; says which there were. */

@@ -3,6 +3,7 @@
 #include "import/assimp/assimp_scene.h"
 #include "import/assimp/assimp_tags.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Without the space between tags and text: Assimp 5.2 refuses it before numbers, which Godot's exporter writes, and knows no
@@ -77,13 +78,37 @@ bool assimp_say_lost(assimp_scene *a) {
     char text[ASSIMP_LOST * (sizeof a->lost[0] + 4)] = "";
     for (unsigned i = 0; i < a->lost_count && i < ASSIMP_LOST; i++)
         (void)snprintf(text + strlen(text), sizeof text - strlen(text), "%s'%s'", i ? ", " : "", a->lost[i]);
+    if (a->off_colors && !import_not_done(a->im, "colours of vertices and faces are left out"))
+        return false;
     return a->lost_count == 0 || import_not_done(a->im, "elements %s%s are left out, with all that is in them", text,
                                                  a->lost_count > ASSIMP_LOST ? " and others" : "");
 }
 
-size_t assimp_mend_collada(assimp_scene *a, char *text, size_t size) {
-    drop_elements(a, (tag_span){text, text + size});
-    size = drop_space(text, size);
-    read_asset(a, (tag_span){text, text + size});
-    return size;
+/* Meshes without a material get the one of the least id from Assimp: this one, as Assimp's own for files that have none. */
+static const char no_material[] =
+    "<library_effects><effect id=\"!\"><profile_COMMON><technique sid=\"!\"><lambert><diffuse><color>0.6 0.6 0.6 1</color>"
+    "</diffuse></lambert></technique></profile_COMMON></effect></library_effects><library_materials><material id=\"!\" "
+    "name=\"DefaultMaterial\"><instance_effect url=\"#!\"/></material></library_materials>";
+
+static char *add_material(char *text, size_t *size) {
+    const size_t more = sizeof no_material - 1;
+    tag_span all = {text, text + *size}, asset, tag;
+    char *out =
+        tag_find(all, "material", &tag) && tag_find(all, "/asset", &asset) && asset.end < all.end ? malloc(*size + more) : NULL;
+    if (!out)
+        return text;
+    const size_t before = (size_t)(asset.end + 1 - text);
+    memcpy(out, text, before);
+    memcpy(out + before, no_material, more);
+    memcpy(out + before + more, text + before, *size - before);
+    *size += more;
+    free(text);
+    return out;
+}
+
+char *assimp_mend_collada(assimp_scene *a, char *text, size_t *size) {
+    drop_elements(a, (tag_span){text, text + *size});
+    *size = drop_space(text, *size);
+    read_asset(a, (tag_span){text, text + *size});
+    return add_material(text, size);
 }
