@@ -38,7 +38,7 @@ for r in $releases; do
     [ ! -d build/tools_models/models ] || { mkdir -p "$roots/$r/models/tools" && cp build/tools_models/models/*.* "$roots/$r/models/tools"; }
     same=0
     for model in $(cd "$roots/$r/models" && find . -name '*.gltf' -o -name '*.glb' -o -name '*.obj' -o -name '*.ply' -o -name '*.dae' -o -name '*.fbx' -o -name '*.3mf' \
-        -o -name '*.x3d' -o -name '*.amf' | sort); do
+        -o -name '*.x3d' -o -name '*.amf' -o -name '*.stl' -o -name '*.off' | sort); do
         rm -f "$roots/$r/there.vit" "$roots/here.vit"
         # shellcheck disable=SC2086 # options are several words
         chroot "$roots/$r" /src/build/debug-no-opencl/vitrine-bake "/models/$model" -o /there.vit $options 2> /dev/null

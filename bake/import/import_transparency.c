@@ -9,7 +9,17 @@
 typedef struct tally {
     uint64_t all, invisible, holes, asked; /* triangles: of alpha 0, of too little alpha, as the scene file asks */
     char name[SCENE_NAME];                 /* of the first hole */
+    uint64_t veiled;                       /* triangles of more alpha than a hole has, but not of 1 */
+    char veiled_name[SCENE_NAME];
 } tally;
+
+static void count_veiled(tally *t, const material_use *use, uint64_t triangles) {
+    if (use->m.alpha >= 1.0f || use->m.kind != VIT_MATTE || use->cutoff_asked || triangles == 0)
+        return;
+    if (t->veiled == 0)
+        memcpy(t->veiled_name, use->m.name, sizeof t->veiled_name);
+    t->veiled += triangles;
+}
 
 /* What becomes of the materials, without a word about them: they are all read again later. */
 static bool take_stock(importer *im, const uint64_t *of_material, unsigned materials, tally *t) {
@@ -23,6 +33,8 @@ static bool take_stock(importer *im, const uint64_t *of_material, unsigned mater
             continue;
         fine = import_material(im, i, NULL, &use);
         t->all += of_material[i];
+        if (fine && !use->hole)
+            count_veiled(t, use, of_material[i]);
         if (!fine || !use->hole)
             continue;
         if (t->holes == 0)
@@ -75,7 +87,11 @@ bool import_transparency(importer *im, const uint64_t *of_material, unsigned mat
                     (unsigned long long)(im->shown == SHOWN_HOLES ? t.holes : t.invisible), (unsigned long long)t.all, t.name,
                     means_opaque_by_0(im) && im->shown == SHOWN_INVISIBLE ? "as exporters mean a <transparency> of 0"
                                                                           : "or hardly anything would be left");
-    return true;
+    return t.veiled == 0 ||
+           import_not_done(im,
+                           "%llu triangles of half transparent materials ('%.100s') are shown opaque: transparency is not "
+                           "simulated ('cutoff' of a material in a scene file makes it a hole, or settles that it is none)",
+                           (unsigned long long)t.veiled, t.veiled_name);
 }
 
 void import_settle_holes(const importer *im, material_use *use) {

@@ -21,6 +21,7 @@ static void kept(const model *m, char names[4]) {
 #define INVERSE "taken the other way round"
 #define OPAQUE "shown opaque"
 #define HOLES "are left as holes"
+#define VEILED "1 triangles of half transparent materials ('b') are shown opaque"
 
 /* a, b, c: their lines in the MTL. */
 static const struct {
@@ -32,6 +33,9 @@ static const struct {
     {"Tr 0", "Tr 0", "Tr 0.7", "", "ab", HOLES},
     {"d 1", "d 0", "", "", "ac", HOLES},
     {"", "d 0.3", "d 0", "", "a", HOLES},
+    {"d 1", "d 0.7", "d 1", "", "abc", VEILED},
+    {"d 1", "d 0.7", "d 1", "{ name = \"b\"; cutoff = 0.5; }", "abc", ""},
+    {"d 1", "d 0.7\nillum 7\nNi 1.5", "d 1", "", "abc", ""},
     /* Exporters that mean opacity. */
     {"Tr 1", "Tr 1", "Tr 1", "", "abc", INVERSE},
     {"Tr 1.000000", "Tr 0.9", "Tr 0.3", "", "ab", INVERSE},

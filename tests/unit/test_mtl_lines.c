@@ -87,10 +87,10 @@ static void options_place_the_picture(void **state) {
 static void d_goes_before_tr(void **state) {
     model m;
     (void)state;
-    import_lines("d .75\nTr .25", "", &m);
+    import_lines("d .75\nTr .25", "half transparent", &m);
     assert_true(m.materials[0].alpha == 0.75f);
     model_free(&m);
-    import_lines("Tr .25", "", &m);
+    import_lines("Tr .25", "half transparent", &m);
     assert_true(m.materials[0].alpha == 0.75f);
     model_free(&m);
     import_lines("Tr 1\nd 1", "d and Tr contradict each other", &m);

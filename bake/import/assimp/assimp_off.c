@@ -1,5 +1,5 @@
-/* OFF: whether it has colours. Assimp leaves aside those of faces without a word, and takes those of vertices, 0 to 1 or 0 to 255,
- * all for the former. */
+/* OFF: whether it has colours. Assimp leaves aside those of faces without a word, and takes those of vertices, 0 to 1 or 0 to
+ * 255, all for the former. */
 #include "import/assimp/assimp_scene.h"
 #include <ctype.h>
 
@@ -33,7 +33,8 @@ void assimp_read_off(assimp_scene *a, const char *text, size_t size) {
     off_text t = {text, text + size};
     double vertices = 0.0, faces = 0.0, corners, value;
     next_line(&t);
-    for (; t.at < t.end && (isalpha((unsigned char)*t.at) || (*t.at == '4' && t.end - t.at > 1 && isalpha((unsigned char)t.at[1])));
+    for (; t.at < t.end &&
+           (isalpha((unsigned char)*t.at) || (*t.at == '4' && t.end - t.at > 1 && isalpha((unsigned char)t.at[1])));
          t.at++)
         a->off_colors = a->off_colors || *t.at == 'C';
     next_line(&t);
