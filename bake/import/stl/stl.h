@@ -1,4 +1,4 @@
-/* stl.c: STL (3D Systems, 1989), in text and in binary. */
+/* stl.c: STL, the format of stereolithography, in text and in binary. */
 #ifndef VIT_BAKE_STL_H
 #define VIT_BAKE_STL_H
 
