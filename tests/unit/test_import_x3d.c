@@ -121,6 +121,16 @@ static void elements_that_are_not_known_are_said(void **state) {
     model_free(&m);
 }
 
+/* Names that only begin like a shape's have no room for what a shape gets. */
+static void elements_whose_names_begin_alike_are_others(void **state) {
+    model m;
+    (void)state;
+    import_x3d("<Anchor><Shape.a></Shape.a><Shape-a></Shape-a><Shape:a></Shape:a></Anchor>" SHAPE(RED, FACE),
+               "elements 'Anchor', 'Shape.a', 'Shape-a', 'Shape:a' are left out", &m);
+    assert_int_equal(m.triangles, 1);
+    model_free(&m);
+}
+
 static void lights_without_a_name_are_called_the_same_each_time(void **state) {
     model m;
     (void)state;
@@ -139,6 +149,7 @@ int main(void) {
         T(colours_of_vertices_stand_in_for_the_materials),
         T(lines_are_no_faces),
         T(elements_that_are_not_known_are_said),
+        T(elements_whose_names_begin_alike_are_others),
         T(lights_without_a_name_are_called_the_same_each_time),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);

@@ -133,10 +133,11 @@ static bool is_known(const char *name) {
            strstr(name, "Sensor");
 }
 
+/* As tag_find() ends it; "" of a tag that ends an element. */
 static void name_of(tag_span tag, char out[32]) {
     size_t length = 0;
-    for (const char *c = tag.at + 1; c < tag.end && length < 31 && (isalnum((unsigned char)*c) || *c == '_'); c++)
-        out[length++] = *c;
+    for (const char *c = tag.at + 1; c < tag.end && length < 31 && !tag_blank(*c) && *c != '/'; c++)
+        out[length++] = isalnum((unsigned char)*c) || strchr("_-.:", *c) ? *c : '?';
     out[length] = '\0';
 }
 
