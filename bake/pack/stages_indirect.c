@@ -104,6 +104,8 @@ static vit_status find_live(bake *b, const photon_scene *s, const uint32_t *movi
                            .frames = (uint32_t)b->scene.frames,
                            .width = c->width,
                            .height = c->height,
+                           .moving = moving,
+                           .moving_count = moving_count,
                            .receivers = out->baked.receivers.receivers,
                            .receiver_count = out->baked.placed,
                            .rows = out->baked.receivers.count,

@@ -14,8 +14,10 @@ typedef struct live_input {
     const tracks *tracks;
     uint32_t frames, width, height;
     const receiver *receivers;
-    uint32_t receiver_count, rows;             /* rows: at least as many; those beyond see nothing */
-    uint32_t patches, points;                  /* quality.patches; quality.patch_points, 1..PATCHES_POINTS */
+    uint32_t receiver_count, rows; /* rows: at least as many; those beyond see nothing */
+    const uint32_t *moving;        /* lights that are live */
+    uint32_t moving_count;
+    uint32_t patches, points;                  /* quality.patches; quality.patch_points */
     uint32_t codec;                            /* VIT_TRANSFER_* */
     uint32_t receiver_rays;                    /* quality.receiver_rays */
     uint32_t reflections;                      /* between light and receiver, at most, or TRANSFER_CONVERGED */

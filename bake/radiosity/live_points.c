@@ -7,8 +7,9 @@ typedef struct pointing {
     const live_input *in;
     const patch_set *p;
     live *out;
-    uint32_t most;      /* points of a patch */
-    patch_point *point; /* `most` a patch */
+    uint32_t *share;    /* a patch: points that it may have, */
+    size_t *first;      /* and where they begin */
+    patch_point *point; /* of one patch after another */
     float *weight;
     uint32_t *count; /* a patch */
 } pointing;
@@ -28,20 +29,21 @@ static void choose(void *user, uint32_t patch) {
     const pointing *w = user;
     patch_point met[PATCHES_POINTS];
     float near[PATCHES_POINTS] = {0};
+    const uint32_t share = w->share[patch];
     uint32_t all = w->p->point_count[patch], nearest[PATCHES_POINTS] = {0};
     for (uint32_t i = 0; i < all; i++)
         met[i] = w->p->points[(size_t)patch * PATCHES_POINTS + i];
-    for (; w->p->point_count[patch] == 0 && all < w->most; all++) {
+    for (; w->p->point_count[patch] == 0 && all < share; all++) {
         const float u = unit_float(all * 0xd1b54a33u + pcg(patch)), v = unit_float(all * 0xabc98389u + 0x40000000u),
                     x = unit_float(all * 0x8cb92ba7u + 0x80000000u);
         met[all].side = patches_place(w->p, patch, u, v, x, &met[all].b1, &met[all].b2);
     }
-    patch_point *to = w->point + (size_t)patch * w->most;
-    float *weight = w->weight + (size_t)patch * w->most;
+    patch_point *to = w->point + w->first[patch];
+    float *weight = w->weight + w->first[patch];
     uint32_t count = 0, next = 0;
     for (uint32_t i = 0; i < all; i++)
         near[i] = INFINITY;
-    while (count < w->most && near[next] > 0.0f) {
+    while (count < share && near[next] > 0.0f) {
         to[count] = met[next];
         for (uint32_t i = 0; i < all; i++) {
             const float d2 = apart2(w, &met[i], &to[count]);
@@ -69,7 +71,8 @@ static void describe(void *user, uint32_t patch) {
     const vit_patch *own = w->out->patches + patch;
     const float high = float_max(sqrtf(from->area / (float)w->count[patch]) * 0.5f, 4.0f * s->ray_offset);
     for (uint32_t i = own->first; i < own->end; i++) {
-        const patch_point *q = w->point + (size_t)patch * w->most + (i - own->first);
+        const size_t at_point = w->first[patch] + (i - own->first);
+        const patch_point *q = w->point + at_point;
         const vec3 face = side_face(w->in->geometry, q->side), place = place_of(w, q);
         float b[3];
         const photon_surface at =
@@ -82,7 +85,7 @@ static void describe(void *user, uint32_t patch) {
         *to = (vit_patch_point){.position = {off.x, off.y, off.z},
                                 .patch = patch,
                                 .normal = {at.normal.x, at.normal.y, at.normal.z},
-                                .weight = float_min(w->weight[(size_t)patch * w->most + (i - own->first)], 1.0f)};
+                                .weight = float_min(w->weight[at_point], 1.0f)};
         for (int k = 0; k < 3; k++) {
             to->albedo[k] = float_min(albedo[k], VIT_MAX_ALBEDO);
             to->reflect[k] = from->albedo[k] > 0.0f ? float_min(to->albedo[k] / from->albedo[k], VIT_MAX_REFLECT) : 0.0f;
@@ -107,19 +110,33 @@ static bool number(pointing *w) {
     return o->patches && o->points;
 }
 
+/* Room for all patches' points. False: out of memory. */
+static bool make_room(pointing *w) {
+    const uint32_t patches = w->p->count, room = (VIT_MAX_COLUMNS - codec_stride(patches) - 16u) / patches;
+    w->share = malloc(patches * sizeof *w->share);
+    w->first = malloc((patches + 1u) * sizeof *w->first);
+    w->count = malloc(patches * sizeof *w->count);
+    if (!w->share || !w->first || !w->count || !live_share(w->in, w->p, w->in->points < room ? w->in->points : room, w->share))
+        return false;
+    w->first[0] = 0;
+    for (uint32_t i = 0; i < patches; i++)
+        w->first[i + 1] = w->first[i] + w->share[i];
+    w->point = malloc((w->first[patches] + 1u) * sizeof *w->point);
+    w->weight = malloc((w->first[patches] + 1u) * sizeof *w->weight);
+    return w->point && w->weight;
+}
+
 vit_status live_points(const live_input *in, const patch_set *p, live *out, vit_text *why) {
-    const uint32_t stride = codec_stride(p->count), room = (VIT_MAX_COLUMNS - stride - 16u) / p->count;
-    pointing w = {.in = in, .p = p, .out = out, .most = in->points < room ? in->points : room};
-    w.point = malloc((size_t)p->count * w.most * sizeof *w.point);
-    w.weight = malloc((size_t)p->count * w.most * sizeof *w.weight);
-    w.count = malloc(p->count * sizeof *w.count);
-    bool fine = w.point && w.weight && w.count;
+    pointing w = {.in = in, .p = p, .out = out};
+    bool fine = make_room(&w);
     if (fine) {
         parallel_for(in->threads, p->count, choose, &w);
         fine = number(&w);
     }
     if (fine)
         parallel_for(in->threads, p->count, describe, &w);
+    free(w.share);
+    free(w.first);
     free(w.point);
     free(w.weight);
     free(w.count);

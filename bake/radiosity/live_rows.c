@@ -4,12 +4,11 @@
 #include "radiosity/live_parts.h"
 #include <stdlib.h>
 
-#define BATCH 1024u  /* receivers between two times that their hits are noted */
-#define FINE_HITS 3u /* of a patch, from which on a receiver sees its points rather than the whole */
+#define BATCH 1024u /* receivers between two times that their hits are noted */
 #define MOST_CODE 65535u
 
 typedef struct seen {
-    uint32_t patch, point; /* VIT_NONE: nothing that reflects */
+    uint32_t point; /* VIT_NONE: nothing that reflects */
     float weight;
 } seen;
 
@@ -43,8 +42,6 @@ static uint32_t point_at(const looking *w, uint32_t patch, const gather_hit *h) 
 
 static int by_place(const void *a, const void *b) {
     const seen *x = a, *y = b;
-    if (x->patch != y->patch)
-        return x->patch < y->patch ? -1 : 1;
     return x->point < y->point ? -1 : x->point > y->point;
 }
 
@@ -59,33 +56,28 @@ static void look(void *user, uint32_t item) {
     for (uint32_t i = 0; i < rays; i++) {
         const float u = lattice_u(i, shift), v = lattice_v(i, pcg(shift));
         const vec3 d = vec3_cosine(about, u, v);
-        hits[i] = (seen){.patch = VIT_NONE};
+        hits[i] = (seen){.point = VIT_NONE};
         if (!(vec3_dot(d, face) > 0.0f))
             continue;
         const gather_hit h = gather(in->rays, in->geometry, from, d, pcg(shift ^ pcg(i)));
         const uint32_t patch = h.side == VIT_NONE ? VIT_NONE : patches_at(w->p, h.side, h.b1, h.b2);
         if (patch != VIT_NONE && h.weight > 0.0f)
-            hits[i] = (seen){patch, point_at(w, patch, &h), h.weight};
+            hits[i] = (seen){point_at(w, patch, &h), h.weight};
     }
     qsort(hits, rays, sizeof *hits, by_place);
 }
 
-/* A receiver's hits, which are sorted, as columns and how many. Returns how many. */
+/* A receiver's hits, which are sorted, as columns and how many. Columns are points: a patch's mean says too little of what is
+ * seen of it, most beside a lamp. Returns how many. */
 static uint32_t to_columns(const looking *w, const seen *hits) {
     const uint32_t rays = w->in->receiver_rays, stride = codec_stride(w->out->patch_count);
     uint32_t count = 0;
-    for (uint32_t i = 0, end; i < rays && hits[i].patch != VIT_NONE; i = end) {
-        for (end = i + 1; end < rays && hits[end].patch == hits[i].patch;)
-            end++;
-        const bool fine = end - i >= FINE_HITS;
-        for (uint32_t k = i; k < end; k++) {
-            const uint32_t to = fine ? stride + hits[k].point : hits[k].patch;
-            if (k == i || to != w->column[count - 1]) {
-                w->column[count] = to;
-                w->hits_of[count++] = 0.0;
-            }
-            w->hits_of[count - 1] += (double)hits[k].weight;
+    for (uint32_t i = 0; i < rays && hits[i].point != VIT_NONE; i++) {
+        if (i == 0 || hits[i].point != hits[i - 1].point) {
+            w->column[count] = stride + hits[i].point;
+            w->hits_of[count++] = 0.0;
         }
+        w->hits_of[count - 1] += (double)hits[i].weight;
     }
     return count;
 }

@@ -382,7 +382,8 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
     out->cell_sum = malloc((used + 1u) * sizeof *out->cell_sum);
     out->points = malloc((k.count + 1u) * PATCHES_POINTS * sizeof *out->points);
     out->point_count = calloc(k.count + 1u, sizeof *out->point_count);
-    fine = fine && out->patch && out->cell_sum && out->points && out->point_count;
+    out->met = calloc(k.count + 1u, sizeof *out->met);
+    fine = fine && out->patch && out->cell_sum && out->points && out->point_count && out->met;
     if (fine) {
         out->cell = k.order;
         k.order = NULL;
@@ -401,7 +402,7 @@ vit_status patches_make(const patches_input *in, patch_set *out, vit_text *why) 
         for (uint32_t i = 0; i < out->cells.count; i++)
             if (out->patch_of[i] == VIT_NONE && is_in(in, out->cells.side_of[i]))
                 out->patch_of[i] = place(&k, i);
-        fine = patches_place_parts(in, edge, out);
+        fine = patches_place_parts(in, &k.met, edge, out);
         patches_keep_points(&k.met, out);
     }
     if (!fine) {
@@ -426,6 +427,7 @@ void patches_free(patch_set *p) {
     free(p->cell_sum);
     free(p->points);
     free(p->point_count);
+    free(p->met);
     free(p->patch_of);
     separations_free(&p->apart);
     free(p->beside);

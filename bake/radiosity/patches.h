@@ -29,7 +29,7 @@ typedef struct radiosity_patch {
     uint32_t first;      /* of its cells in patches.cell; they end where the next patch's begin */
 } radiosity_patch;
 
-#define PATCHES_POINTS 32u /* of a patch, at most */
+#define PATCHES_POINTS 128u /* of a patch, at most */
 
 typedef struct patch_point {
     uint32_t side;
@@ -45,6 +45,7 @@ typedef struct patch_set {
     double *cell_sum;      /* area of these cells up to the end of each, m2, anew in each patch */
     patch_point *points;   /* PATCHES_POINTS per patch: where paths from the cameras met it, as dense as they do */
     uint32_t *point_count; /* a patch: how many of its points are there */
+    uint32_t *met;         /* a patch: how many paths met it */
     uint32_t *patch_of;    /* a cell: its patch, or VIT_NONE */
     separations apart;     /* cells that something stands on; they belong to no patch's cells */
     uint32_t (*beside)[2]; /* one of these: its patches in front of the plane and behind it, or VIT_NONE */

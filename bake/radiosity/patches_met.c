@@ -82,12 +82,11 @@ void patches_keep_points(const patches_met *m, patch_set *p) {
         const uint32_t patch = is_looked_for(i, at) ? patches_at(p, at.side, at.b1, at.b2) : VIT_NONE;
         if (patch == VIT_NONE)
             continue;
-        const uint32_t before = p->point_count[patch]++;
+        const uint32_t before = p->met[patch]++;
         const uint32_t slot = before < PATCHES_POINTS ? before : pcg((uint32_t)i) % (before + 1);
         if (slot < PATCHES_POINTS)
             p->points[(size_t)patch * PATCHES_POINTS + slot] = at;
     }
     for (uint32_t i = 0; i < p->count; i++)
-        if (p->point_count[i] > PATCHES_POINTS)
-            p->point_count[i] = PATCHES_POINTS;
+        p->point_count[i] = p->met[i] < PATCHES_POINTS ? p->met[i] : PATCHES_POINTS;
 }

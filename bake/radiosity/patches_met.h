@@ -17,8 +17,8 @@ void patches_met_free(patches_met *m);
 /* A cell: how many paths met it; one that a camera sees itself counts for little, as it need not give light. The caller's;
  * NULL: out of memory. */
 float *patches_met_worth(const patches_met *m, const cells *c);
-/* Fills in points and point_count, which is 0, once cells have their patches: a reservoir of all places (Vitter 1985), the same
- * whatever the threads. */
+/* Fills in points, their count and `met`, which is 0, once cells have their patches: a reservoir of all places (Vitter 1985),
+ * the same whatever the threads. */
 void patches_keep_points(const patches_met *m, patch_set *p);
 
 #endif

@@ -3,7 +3,9 @@
 #include <stdlib.h>
 
 #define SPLIT_LEAST 0.04f /* of a square of the edge: smaller cells are not looked at for what stands on them */
-#define NEAREST 16u       /* cells that a part may belong to the patch of, if it sees them */
+#define NEAREST 16u       /* cells that a part may belong to the patch of, if it sees them; */
+#define FARTHEST 256u     /* if it sees none, four times as many are asked, and so on, where paths met it */
+#define MET 4u            /* places of a part from which that is asked, at most */
 
 typedef struct parting {
     const patches_input *in;
@@ -35,14 +37,13 @@ bool patches_find_parts(const patches_input *in, float edge, patch_set *p) {
 }
 
 /* A place of the cell in this part, and if there is one a place that others see. */
-static vec3 place_in(const patches_input *in, const patch_set *p, uint32_t cell, uint32_t part, float lift) {
-    const uint32_t side = p->cells.side_of[cell], front = p->apart.found[p->apart.of[cell]].places,
-                   all = part == 0 ? front : ~front & SEPARATION_EVERYWHERE, seen = all & ~p->apart.alone[cell],
-                   among = seen ? seen : all;
+static patch_point place_in(const patch_set *p, uint32_t cell, uint32_t part) {
+    const uint32_t front = p->apart.found[p->apart.of[cell]].places, all = part == 0 ? front : ~front & SEPARATION_EVERYWHERE,
+                   seen = all & ~p->apart.alone[cell], among = seen ? seen : all;
     const cell_corners k = cells_corners(&p->cells, cell);
-    float b1, b2;
-    separation_place(&k, among ? (uint32_t)__builtin_ctz(among) : 0, &b1, &b2);
-    return vec3_along(side_place(in->geometry, side, b1, b2), side_face(in->geometry, side), lift);
+    patch_point at = {.side = p->cells.side_of[cell]};
+    separation_place(&k, among ? (uint32_t)__builtin_ctz(among) : 0, &at.b1, &at.b2);
+    return at;
 }
 
 /* Cells that have a patch, along x: what is nearest lies about its place in this list. */
@@ -57,6 +58,8 @@ typedef struct placing {
     centre *centres;
     uint32_t count;
     float lift;
+    patch_point (*met)[2][MET]; /* of what is parted: where paths met either part, */
+    uint8_t (*met_count)[2];    /* so many */
 } placing;
 
 static int by_x(const void *a, const void *b) {
@@ -67,8 +70,9 @@ static int by_x(const void *a, const void *b) {
 }
 
 typedef struct near_cells {
-    float distance2[NEAREST]; /* ascending */
-    uint32_t cell[NEAREST], count;
+    float distance2[FARTHEST]; /* ascending */
+    uint32_t cell[FARTHEST], count;
+    uint32_t most;
 } near_cells;
 
 /* A cell that is turned away counts as farther off. */
@@ -76,9 +80,9 @@ static void offer(const placing *w, const centre *c, vec3 place, vec3 face, near
     const vec3 way = vec3_sub(c->at, place);
     const float turn = 2.0f - vec3_dot(side_face(w->in->geometry, w->p->cells.side_of[c->cell]), face),
                 d2 = vec3_dot(way, way) * turn * turn;
-    if (turn > 1.5f || (n->count == NEAREST && d2 >= n->distance2[NEAREST - 1]))
+    if (turn > 1.5f || (n->count == n->most && d2 >= n->distance2[n->most - 1]))
         return;
-    uint32_t at = n->count < NEAREST ? n->count++ : NEAREST - 1;
+    uint32_t at = n->count < n->most ? n->count++ : n->most - 1;
     for (; at > 0 && n->distance2[at - 1] > d2; at--) {
         n->distance2[at] = n->distance2[at - 1];
         n->cell[at] = n->cell[at - 1];
@@ -88,11 +92,11 @@ static void offer(const placing *w, const centre *c, vec3 place, vec3 face, near
 }
 
 static bool may_be_near(const near_cells *n, float along) {
-    return n->count < NEAREST || along * along < n->distance2[NEAREST - 1];
+    return n->count < n->most || along * along < n->distance2[n->most - 1];
 }
 
-/* The patch of the nearest cell that faces the same way and can be seen from the place. */
-static uint32_t patch_near(const placing *w, vec3 place, vec3 face) {
+/* The cells nearest to the place that face about the same way. */
+static void find_near(const placing *w, vec3 place, vec3 face, near_cells *n) {
     uint32_t low = 0, high = w->count;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
@@ -101,23 +105,36 @@ static uint32_t patch_near(const placing *w, vec3 place, vec3 face) {
         else
             high = middle;
     }
-    near_cells n = {.count = 0};
+    n->count = 0;
     for (uint32_t up = low, down = low; up < w->count || down > 0;) {
-        if (up < w->count && may_be_near(&n, w->centres[up].at.x - place.x))
-            offer(w, &w->centres[up++], place, face, &n);
+        if (up < w->count && may_be_near(n, w->centres[up].at.x - place.x))
+            offer(w, &w->centres[up++], place, face, n);
         else
             up = w->count;
-        if (down > 0 && may_be_near(&n, w->centres[down - 1].at.x - place.x))
-            offer(w, &w->centres[--down], place, face, &n);
+        if (down > 0 && may_be_near(n, w->centres[down - 1].at.x - place.x))
+            offer(w, &w->centres[--down], place, face, n);
         else
             down = 0;
     }
-    for (uint32_t i = 0; i < n.count; i++) {
-        const uint32_t side = w->p->cells.side_of[n.cell[i]];
-        const vec3 to =
-            vec3_along(cells_center(&w->p->cells, w->in->geometry, n.cell[i]), side_face(w->in->geometry, side), w->lift);
-        if (separation_sees(w->in->rays, place, to))
-            return w->p->patch_of[n.cell[i]];
+}
+
+/* The patch of the nearest cell that faces the same way and can be seen from the place, of the `most` nearest. */
+static uint32_t patch_near(const placing *w, const patch_point *at, uint32_t most) {
+    const vec3 face = side_face(w->in->geometry, at->side),
+               place = vec3_along(side_place(w->in->geometry, at->side, at->b1, at->b2), face, w->lift);
+    near_cells n;
+    uint32_t asked = 0;
+    for (n.most = NEAREST; n.most <= most; n.most *= 4) {
+        find_near(w, place, face, &n);
+        for (; asked < n.count; asked++) {
+            const uint32_t cell = n.cell[asked], side = w->p->cells.side_of[cell];
+            const vec3 to =
+                vec3_along(cells_center(&w->p->cells, w->in->geometry, cell), side_face(w->in->geometry, side), w->lift);
+            if (separation_sees(w->in->rays, place, to))
+                return w->p->patch_of[cell];
+        }
+        if (n.count < n.most)
+            break;
     }
     return VIT_NONE;
 }
@@ -125,25 +142,52 @@ static uint32_t patch_near(const placing *w, vec3 place, vec3 face) {
 static void place_part(void *user, uint32_t cell) {
     const placing *w = user;
     patch_set *p = w->p;
-    if (p->apart.of[cell] == VIT_NONE || p->patch_of[cell] == VIT_NONE)
+    const uint32_t apart = p->apart.of[cell];
+    if (apart == VIT_NONE || p->patch_of[cell] == VIT_NONE)
         return;
-    const vec3 face = side_face(w->in->geometry, p->cells.side_of[cell]);
-    for (uint32_t part = 0; part < 2; part++)
-        p->beside[p->apart.of[cell]][part] = patch_near(w, place_in(w->in, p, cell, part, w->lift), face);
+    for (uint32_t part = 0; part < 2; part++) {
+        uint32_t *to = &p->beside[apart][part];
+        for (uint32_t i = 0; i < w->met_count[apart][part] && *to == VIT_NONE; i++)
+            *to = patch_near(w, &w->met[apart][part][i], FARTHEST);
+        if (w->met_count[apart][part] == 0) {
+            const patch_point any = place_in(p, cell, part);
+            *to = patch_near(w, &any, NEAREST);
+        }
+    }
 }
 
-bool patches_place_parts(const patches_input *in, float edge, patch_set *p) {
+/* The first places of each part that paths met. */
+static void keep_met(const patches_met *m, placing *w) {
+    for (size_t i = 0; i < m->count; i++) {
+        const patch_point *at = m->places + i;
+        const uint32_t cell = at->side == VIT_NONE ? VIT_NONE : cells_at(&w->p->cells, at->side, at->b1, at->b2),
+                       apart = cell == VIT_NONE ? VIT_NONE : w->p->apart.of[cell];
+        if (apart == VIT_NONE)
+            continue;
+        const bool back = !separations_front(&w->p->apart, cell, side_place(w->in->geometry, at->side, at->b1, at->b2));
+        if (w->met_count[apart][back] < MET)
+            w->met[apart][back][w->met_count[apart][back]++] = *at;
+    }
+}
+
+bool patches_place_parts(const patches_input *in, const patches_met *m, float edge, patch_set *p) {
     placing w = {.in = in,
                  .p = p,
                  .lift = separation_lift(in->rays, edge),
-                 .centres = malloc((p->cells.count + 1u) * sizeof *w.centres)};
-    if (!w.centres)
-        return false;
-    for (uint32_t i = 0; i < p->cells.count; i++)
-        if (p->patch_of[i] != VIT_NONE && p->apart.of[i] == VIT_NONE)
-            w.centres[w.count++] = (centre){cells_center(&p->cells, in->geometry, i), i};
-    qsort(w.centres, w.count, sizeof *w.centres, by_x);
-    parallel_for(in->threads, p->cells.count, place_part, &w);
+                 .centres = malloc((p->cells.count + 1u) * sizeof *w.centres),
+                 .met = malloc((p->apart.count + 1u) * sizeof *w.met),
+                 .met_count = calloc(p->apart.count + 1u, sizeof *w.met_count)};
+    const bool fine = w.centres && w.met && w.met_count;
+    if (fine) {
+        for (uint32_t i = 0; i < p->cells.count; i++)
+            if (p->patch_of[i] != VIT_NONE && p->apart.of[i] == VIT_NONE)
+                w.centres[w.count++] = (centre){cells_center(&p->cells, in->geometry, i), i};
+        qsort(w.centres, w.count, sizeof *w.centres, by_x);
+        keep_met(m, &w);
+        parallel_for(in->threads, p->cells.count, place_part, &w);
+    }
     free(w.centres);
-    return true;
+    free(w.met);
+    free(w.met_count);
+    return fine;
 }
