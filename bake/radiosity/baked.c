@@ -11,10 +11,12 @@
 #define CELLS_PER_RECEIVER 4u /* of surfaces that light comes from, about */
 #define CELLS_LEAST 8192u
 #define CELLS_MOST 65536u
-#define BOUNCE_RAYS 128u /* per cell, about */
-#define FEWER 4u         /* rays and cells of the first look, which tells where receivers must be near each other */
-#define FIRST_LOOK 0.13  /* share of the time, about, of each look that tells where receivers must be near each other */
-#define LIVE_STATES 64u  /* of all lights that are live, at which the first look asks for their light, about */
+#define BOUNCE_RAYS 4u /* a receiver has so many for one of a cell, about, */
+#define BOUNCE_LEAST 4u
+#define LOOKS 0.75      /* and for so many looks at lights of a cell */
+#define FEWER 4u        /* rays and cells of the first look, which tells where receivers must be near each other */
+#define FIRST_LOOK 0.13 /* share of the time, about, of each look that tells where receivers must be near each other */
+#define LIVE_STATES 64u /* of all lights that are live, at which the first look asks for their light, about */
 
 /* States of the lights: what stays first, then each moving light at its knots, with an intensity of 1. */
 typedef struct states {
@@ -157,6 +159,7 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
     uint32_t lights = 0, of_light = CELLS_PER_RECEIVER * count;
     of_light = (of_light < CELLS_LEAST ? CELLS_LEAST : of_light < CELLS_MOST ? of_light : CELLS_MOST) / fewer;
     of_light = of_light > CELLS_LEAST ? of_light : CELLS_LEAST;
+    const uint32_t bounces = in->receiver_rays / BOUNCE_RAYS / fewer;
     const transport_input t = {.rays = in->rays,
                                .geometry = in->geometry,
                                .receivers = records,
@@ -166,7 +169,8 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
                                .reflections = in->reflections,
                                .cells = of_light,
                                .receiver_rays = in->receiver_rays > fewer ? in->receiver_rays / fewer : 1,
-                               .bounce_rays = of_light * (BOUNCE_RAYS / fewer),
+                               .bounce_rays = of_light * (bounces > BOUNCE_LEAST ? bounces : BOUNCE_LEAST),
+                               .looks = (double)in->receiver_rays * LOOKS,
                                .panes = in->panes,
                                .threads = in->threads,
                                .progress = !in->progress ? NULL

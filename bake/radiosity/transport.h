@@ -27,6 +27,7 @@ typedef struct transport_input {
     uint32_t cells;                            /* about so many cells of surfaces where light comes from */
     uint32_t receiver_rays;                    /* per receiver */
     uint32_t bounce_rays;                      /* of all cells together, about */
+    double looks;                              /* at lights, per cell, about, shared out by how much each adds to the error */
     bool panes;                                /* light comes through thin glass, too */
     unsigned threads;                          /* 0: all cores; changes no byte */
     void (*progress)(void *user, double done); /* may be NULL */

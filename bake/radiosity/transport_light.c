@@ -5,7 +5,6 @@
 #include <string.h>
 
 #define LEAST_SAMPLES 4u    /* of each light that is found by chance, at each of a cell's places */
-#define MORE_LOOKS 384.0    /* at lights, per cell that is wanted, shared out by how much each adds to the error */
 #define VARIES 0.25         /* deviation over mean of direct light, from which on a cell's mean is not good enough close by */
 #define BLOCK 64u           /* cells that are alike in how light varies on them */
 #define MOST_SAMPLES 16384u /* of a cell */
@@ -152,7 +151,8 @@ void transport_light_at(const transport *t, uint32_t n, const transport_place *p
 
 /* At how many places a cell is looked at first: fewer where receivers get little from it and looks are many. */
 static uint32_t first_places(const lighting *l, uint32_t n) {
-    const double wanted = l->all > 0.0 ? ceil(MORE_LOOKS / l->looks * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
+    const double wanted =
+        l->all > 0.0 ? ceil(l->t->in->looks / l->looks * (double)l->weight[n] * l->t->in->cells / l->all) : 0.0;
     const uint32_t most = l->t->place_count[n];
     return wanted < 1.0 ? 1 : wanted < most ? (uint32_t)wanted : most;
 }
@@ -257,7 +257,7 @@ static bool share_out(lighting *l) {
         for (uint32_t i = 0; i < t->count && all > 0.0; i++) {
             const double w = (double)l->weight[i];
             const double part =
-                (w / l->all + w * variance[half_of(t, i) ^ 1u] / all) * 0.5 * MORE_LOOKS * t->in->cells / l->looks;
+                (w / l->all + w * variance[half_of(t, i) ^ 1u] / all) * 0.5 * t->in->looks * t->in->cells / l->looks;
             l->more[i] = part < MOST_SAMPLES ? (uint32_t)part : MOST_SAMPLES;
         }
     }

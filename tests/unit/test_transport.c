@@ -15,7 +15,7 @@ typedef struct effort {
     uint32_t cells, bounce_rays;
 } effort;
 
-enum { CELLS = 8192 };
+enum { CELLS = 8192, LOOKS = 384 };
 static const effort usual = {24, 128, CELLS, 128 * CELLS};
 
 /* evenly^2 places on each side that light reaches, each for a like part of its area. */
@@ -51,7 +51,8 @@ static void arriving(const lab *l, const transport_state *states, uint32_t state
                                 .reflections = reflections,
                                 .cells = e.cells,
                                 .receiver_rays = e.rays,
-                                .bounce_rays = e.bounce_rays};
+                                .bounce_rays = e.bounce_rays,
+                                .looks = LOOKS};
     transport_report report;
     vit_text why = {""};
     if (transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why) != VIT_OK)
@@ -264,7 +265,8 @@ static void light_of_a_spot_close_by_comes_from_where_it_is(void **state) {
                                 .reflections = 1,
                                 .cells = 256,
                                 .receiver_rays = 4096,
-                                .bounce_rays = 1};
+                                .bounce_rays = 1,
+                                .looks = LOOKS};
     transport_report report;
     vit_text why = {""};
     assert_int_equal(in.receiver_count, PLACES);
@@ -305,7 +307,8 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
                                 .reflections = TRANSPORT_CONVERGED,
                                 .cells = 256,
                                 .receiver_rays = 512,
-                                .bounce_rays = 65536};
+                                .bounce_rays = 65536,
+                                .looks = LOOKS};
     transport_report report;
     vit_text why = {""};
     assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
@@ -346,7 +349,8 @@ static void light_is_never_less_than_none(void **state) {
                                 .reflections = 1,
                                 .cells = 256,
                                 .receiver_rays = 64,
-                                .bounce_rays = 1};
+                                .bounce_rays = 1,
+                                .looks = LOOKS};
     transport_report report;
     vit_text why = {""};
     assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
