@@ -208,7 +208,7 @@ static void a_basis_that_is_wrong_is_refined(void **state) {
     int spacing, tries;
     size_t sizes[2];
     scene_lab *l = *state;
-    write_scene(l, "", 2, "{ position = [-0.4, -0.994, -0.3]; power = [10.0, 10.0, 10.0]; }", /* 6 mm off the floor */
+    write_scene(l, "", 2, "{ position = [-0.7, -0.992, -0.3]; power = [10.0, 10.0, 10.0]; }", /* 8 mm off the floor */
                 "quality: { auto = true; receiver_rays = 32; };\n");
     bake_checked(l, "scene.vit", "--indirect auto");
     quality_said(l, line);
