@@ -1,6 +1,6 @@
 # Fuzzing with libFuzzer, address and undefined behaviour sanitizers: make fuzz, or make fuzz FUZZ=mesh FUZZ_SECONDS=3600.
 # Inputs found on the way stay in build/fuzz/corpus, crashes in build/fuzz/crashes; a mended crash's input goes to tests/fuzz/seeds.
-FUZZ ?= pack scene mesh gltf obj ply stl 3mf
+FUZZ ?= pack scene mesh gltf obj ply stl 3mf assimp
 FUZZ_SECONDS ?= 60
 FUZZ_PARTS := $(filter-out tests/fuzz/targets/driver.c,$(wildcard tests/fuzz/targets/*.c))
 FUZZERS := $(FUZZ:%=$(B)/fuzz_%)

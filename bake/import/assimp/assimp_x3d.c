@@ -170,8 +170,9 @@ char *assimp_mend_x3d(assimp_scene *a, char *text, size_t *size) {
     size_t shapes = 0;
     tag_span rest = {text, text + *size}, tag;
     read_unit(a, rest);
-    for (tag_span s = rest; tag_find(s, "Shape", &tag); s.at = tag.end)
-        shapes++;
+    /* In comments too: what is one depends on where the search began. */
+    for (tag_span s = rest; s.at < s.end; s.at++)
+        shapes += tag_begins(s, "<Shape");
     written w = {.a = a, .text = malloc(*size + shapes * sizeof appearance + 1)};
     if (!w.text)
         return text;

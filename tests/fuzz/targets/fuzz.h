@@ -16,7 +16,8 @@
     X(obj, 4096)                                                                                                               \
     X(ply, 4096)                                                                                                               \
     X(stl, 4096)                                                                                                               \
-    X(3mf, 8192)
+    X(3mf, 8192)                                                                                                               \
+    X(assimp, 4096)
 
 #define X(name, most) void fuzz_##name(const uint8_t *data, size_t size);
 FUZZ_TARGETS(X)
