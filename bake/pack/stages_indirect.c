@@ -126,6 +126,9 @@ static vit_status find_live(bake *b, const photon_scene *s, const uint32_t *movi
         c->effects = (c->effects & ~vit_effects_upon(VIT_BIT(RADIOSITY))) | VIT_BIT(BASIS);
         return VIT_OK;
     }
+    if (out->live.each < in.points)
+        progress_line(b->p->progress, true, "warning: %u patches have room for %u points each, not for patch_points = %u",
+                      out->live.patch_count, out->live.each, in.points);
     c->patches = out->live.patch_count;
     c->patch_points = out->live.point_count;
     c->gather_words = out->live.word_count;

@@ -42,6 +42,7 @@ typedef struct live {
     vit_u32 *looked;         /* section LOOK; at first one set for all frames, of all receivers */
     coded transfer;          /* section XFER; empty with one reflection */
     uint32_t patch_count, point_count, row_count, word_count;
+    uint32_t each;          /* points of a patch, on average, at most: what was asked for, or what there is room for */
     uint32_t looked_frames; /* that share a set */
     live_saving saving;     /* by live_keep() */
     double unequal;         /* form_factors.unequal */
@@ -58,5 +59,7 @@ vit_status live_look_at_all(live *l, uint32_t receiver_count, uint32_t frames, v
  * receivers / 32 words, a bit a receiver. VIT_FAILED: out of memory. */
 vit_status live_keep(live *l, struct baked *b, const vit_u32 *bits, uint32_t frames, vit_text *why);
 void live_free(live *l);
+/* Points that so many patches have room for on average, each: columns have 16 bits. */
+uint32_t live_points_room(uint32_t patches);
 
 #endif

@@ -110,13 +110,18 @@ static bool number(pointing *w) {
     return o->patches && o->points;
 }
 
+uint32_t live_points_room(uint32_t patches) {
+    return (VIT_MAX_COLUMNS - codec_stride(patches) - 16u) / patches;
+}
+
 /* Room for all patches' points. False: out of memory. */
 static bool make_room(pointing *w) {
-    const uint32_t patches = w->p->count, room = (VIT_MAX_COLUMNS - codec_stride(patches) - 16u) / patches;
+    const uint32_t patches = w->p->count, room = live_points_room(patches);
+    w->out->each = w->in->points < room ? w->in->points : room;
     w->share = malloc(patches * sizeof *w->share);
     w->first = malloc((patches + 1u) * sizeof *w->first);
     w->count = malloc(patches * sizeof *w->count);
-    if (!w->share || !w->first || !w->count || !live_share(w->in, w->p, w->in->points < room ? w->in->points : room, w->share))
+    if (!w->share || !w->first || !w->count || !live_share(w->in, w->p, w->out->each, w->share))
         return false;
     w->first[0] = 0;
     for (uint32_t i = 0; i < patches; i++)

@@ -5,6 +5,7 @@
  * forms, cut into many patches, so that sums over patches are the closed forms' whatever the cut. */
 #include "photon_room.h"
 #include "radiosity/bounces.h"
+#include "radiosity/live.h"
 
 typedef struct lab {
     room *r;
@@ -194,6 +195,16 @@ static void no_patch_lies_on_both_sides_of_a_wall(void **state) {
     close_lab(&l);
 }
 
+static void points_have_room_in_16_bits(void **state) {
+    (void)state;
+    static const uint32_t patches[] = {16, 2048, 4096, 8192, 16384}, each[] = {4094, 30, 14, 6, 2};
+    for (size_t i = 0; i < sizeof patches / sizeof *patches; i++) {
+        const uint32_t most = live_points_room(patches[i]);
+        assert_int_equal(most, each[i]);
+        assert_true(codec_stride(patches[i]) + (patches[i] * most + 15u) / 16u * 16u <= VIT_MAX_COLUMNS);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parallel_squares_have_their_form_factor),
@@ -201,6 +212,7 @@ int main(void) {
         cmocka_unit_test(rows_of_a_closed_room_sum_to_one_and_are_reciprocal),
         cmocka_unit_test(a_furnace_is_a_geometric_series),
         cmocka_unit_test(no_patch_lies_on_both_sides_of_a_wall),
+        cmocka_unit_test(points_have_room_in_16_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
