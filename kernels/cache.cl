@@ -25,9 +25,10 @@ static inline li cache_target(global const vit_scene *scene, global const uint *
         L_STORE(near.q[i], of_q + i * VIT_LANES);
     }
     li chosen = cache_choose(&near, l_unit_float(l_pcg(random + 2u))) * VIT_LANES + L_INDEX;
-    li cell = L_GATHER(li, of_cell, chosen) * VIT_LANES + L_INDEX;
-    li record = cache_find(cells, scene->cache_cells, scene->cache_probes, lanes,
-                           cache_key(L_GATHER(lu, seeds, cell), L_AS_UINT(side)), L_GATHER(lu, tags, cell));
+    li of = L_GATHER(li, of_cell, chosen), cell = of * VIT_LANES + L_INDEX;
+    lv3 at = cache_from_corner(&place, ((place.x - 1) >> 1) + (of & 1), ((place.y - 1) >> 1) + (of >> 1 & 1),
+                               ((place.z - 1) >> 1) + (of >> 2));
+    li record = cache_find_part(scene, cells, lanes, L_GATHER(lu, seeds, cell), L_AS_UINT(side), L_GATHER(lu, tags, cell), at);
     return l_sel_i(lanes & L_GE(record, L_I(0)), record * (int)VIT_CACHE_POINTS + L_GATHER(li, of_q, chosen), L_I(-1));
 }
 

@@ -1,6 +1,7 @@
 #include "cache/occlusion.h"
 #include "cache/fit.h"
 #include "cache/points.h"
+#include "cache/walls.h"
 #include "common/fail.h"
 #include "common/parallel.h"
 #include "common/progress.h"
@@ -10,6 +11,7 @@
 #define ENOUGH 32u     /* places that read a point */
 #define LEAST_RAYS 16u /* a place */
 #define MOST_RAYS 1024u
+#define RAYS_FOR_WALLS 64u     /* a place, where frames fill the cells: values that tell where walls are alone */
 #define EVEN 0.25              /* variance of even rays over that of chance, at most, where edges are few */
 #define CHUNK 256u             /* places */
 #define LEAST_OFFSETS 8.0f     /* ray_offsets that a box is wide, at least */
@@ -20,7 +22,8 @@ typedef struct asking {
     const cache_sights *sights;
     const cache_met *met;
     uint32_t rays;
-    float *open;
+    float *open; /* a row */
+    float *of;   /* a sight; NAN: not asked yet */
 } asking;
 
 /* Part of the rays by the cosine about the normal that get to the radius; those below the surface do not. */
@@ -37,8 +40,12 @@ static float open_at(const asking *a, const cache_sight *s, uint32_t number) {
 
 static void ask(void *user, uint32_t chunk, uint64_t *sum) {
     const asking *a = user;
-    for (uint32_t row = chunk * CHUNK; row < (chunk + 1) * CHUNK && row < a->met->taken_count; row++)
-        a->open[row] = open_at(a, a->sights->sight + a->met->taken[row], row);
+    for (uint32_t row = chunk * CHUNK; row < (chunk + 1) * CHUNK && row < a->met->taken_count; row++) {
+        float *of = a->of + a->met->taken[row];
+        if (isnan(*of))
+            *of = open_at(a, a->sights->sight + a->met->taken[row], row);
+        a->open[row] = *of;
+    }
     *sum += 1;
 }
 
@@ -62,17 +69,34 @@ static void choose_levels(const occlusion_input *in, const cache_sights *s, vit_
 
 static uint32_t code_of(float value) {
     const float code = floorf(value * VIT_CACHE_STEPS + 0.5f) + (float)VIT_CACHE_ZERO;
-    return (uint32_t)float_min(float_max(code, 1.0f), (float)VIT_CACHE_CODE);
+    return (uint32_t)float_min(float_max(code, 1.0f), (float)VIT_CACHE_MOST);
+}
+
+static vit_cache_cell empty_cell(const cache_cell *c) {
+    return (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
+}
+
+/* The planes of parted cells. */
+static uint32_t put_walls(const cache_walls *w, vit_cache_cell *cells) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; w->count > 0 && i < w->met->cell_count; i++)
+        if (w->plane[i].normal != 0) {
+            vit_cache_cell *c = cells + count++;
+            *c = empty_cell(w->met->cells + i);
+            c->word[0] = w->plane[i].normal;
+            memcpy(c->word + 1, &w->plane[i].from, sizeof *c->word);
+            c->word[2] |= VIT_CACHE_PARTED;
+        }
+    return count;
 }
 
 /* The cells with what is known at their points, as a table. */
-static vit_status put(const cache_met *m, const float *value, occlusion *out, vit_text *why) {
-    vit_cache_cell *cells = malloc((m->cell_count + 1u) * sizeof *cells);
+static vit_status put(const cache_met *m, const cache_walls *w, const float *value, occlusion *out, vit_text *why) {
+    vit_cache_cell *cells = malloc((m->cell_count + w->count + 1u) * sizeof *cells);
     if (!cells)
         return bake_fail(why, VIT_FAILED, "out of memory");
     for (uint32_t i = 0; i < m->cell_count; i++) {
-        const cache_cell *c = m->cells + i;
-        cells[i] = (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
+        cells[i] = empty_cell(m->cells + i);
         for (uint32_t q = 0; q < VIT_CACHE_POINTS; q++) {
             const float v = value[i * VIT_CACHE_POINTS + q];
             if (isfinite(v)) {
@@ -81,8 +105,9 @@ static vit_status put(const cache_met *m, const float *value, occlusion *out, vi
             }
         }
     }
-    out->cells = m->cell_count;
-    const vit_status status = cache_table_fit(cells, m->cell_count, &out->table, why);
+    out->parted = put_walls(w, cells + m->cell_count);
+    out->cells = m->cell_count + out->parted;
+    const vit_status status = cache_table_fit(cells, out->cells, &out->table, why);
     free(cells);
     return status;
 }
@@ -101,39 +126,71 @@ static uint32_t rays_of(const occlusion_input *in, const cache_met *m) {
 
 static float *nothing_known(const cache_met *m) {
     const size_t points = (size_t)m->cell_count * VIT_CACHE_POINTS;
-    float *value = malloc((points + 1) * sizeof *value);
+    float *value = calloc(points + 1, sizeof *value);
     for (size_t i = 0; i < points && value; i++)
         value[i] = NAN;
     return value;
 }
 
-static vit_status find(const occlusion_input *in, const cache_sights *sights, cache_met *m, occlusion *out, vit_text *why) {
-    vit_scene meta = {.cache_levels = 1};
-    choose_levels(in, sights, &meta);
-    vit_status status = cache_met_find(&meta, sights, ENOUGH, m, why);
-    if (status != VIT_OK)
-        return status;
-    asking a = {.in = in, .sights = sights, .met = m, .rays = rays_of(in, m)};
-    a.open = malloc((m->taken_count + 1u) * sizeof *a.open);
+/* All rows' values. False: out of memory. */
+static bool ask_rows(asking *a) {
     uint64_t asked = 0;
     const parallel_work work = {.run = ask,
                                 .done = tell,
-                                .user = &a,
+                                .user = a,
                                 .step = 1,
-                                .count = (m->taken_count + CHUNK - 1) / CHUNK,
-                                .threads = in->seen.threads};
+                                .count = (a->met->taken_count + CHUNK - 1) / CHUNK,
+                                .threads = a->in->seen.threads};
+    free(a->open);
+    a->open = malloc((a->met->taken_count + 1u) * sizeof *a->open);
+    return a->open && parallel_run(&work, &asked);
+}
+
+/* Asks the places that read whole cells, finds the walls among them, and where there are any asks those that read parts. */
+static bool ask_places(asking *a, const vit_scene *meta, cache_met met[2], cache_walls *walls, vit_text *why) {
+    a->met = met;
+    a->rays = a->in->live ? RAYS_FOR_WALLS : rays_of(a->in, met);
+    a->of = malloc((a->sights->count + 1u) * sizeof *a->of);
+    for (uint32_t i = 0; a->of && i < a->sights->count; i++)
+        a->of[i] = NAN;
+    if (!a->of || !ask_rows(a))
+        return false;
+    const cache_walls_input in = {.rays = a->in->seen.rays,
+                                  .sights = a->sights,
+                                  .met = met,
+                                  .value = a->open,
+                                  .step = meta->cache_step,
+                                  .worth = a->in->error * a->in->error,
+                                  .threads = a->in->seen.threads};
+    if (!cache_walls_find(&in, walls))
+        return false;
+    if (walls->count == 0)
+        return true;
+    a->met = met + 1;
+    return cache_met_find(meta, a->sights, ENOUGH, walls, met + 1, why) == VIT_OK && (a->in->live || ask_rows(a));
+}
+
+/* met: empty ones, to be freed. */
+static vit_status find(const occlusion_input *in, const cache_sights *sights, cache_met met[2], occlusion *out, vit_text *why) {
+    vit_scene meta = {.cache_levels = 1};
+    choose_levels(in, sights, &meta);
+    vit_status status = cache_met_find(&meta, sights, ENOUGH, NULL, met, why);
+    if (status != VIT_OK)
+        return status;
+    asking a = {.in = in, .sights = sights};
+    cache_walls walls = {0};
     float *value = NULL;
-    if (in->live)
-        value = nothing_known(m);
-    else if (a.open && parallel_run(&work, &asked))
-        value = cache_fit(m, a.open, &out->off);
-    status = value ? put(m, value, out, why) : bake_fail(why, VIT_FAILED, "out of memory");
+    if (ask_places(&a, &meta, met, &walls, why))
+        value = in->live ? nothing_known(a.met) : cache_fit(a.met, a.open, &out->off);
+    status = value ? put(a.met, &walls, value, out, why) : bake_fail(why, VIT_FAILED, "out of memory");
+    cache_walls_free(&walls);
     free(a.open);
+    free(a.of);
     free(value);
     out->levels = meta.cache_levels;
     out->step = meta.cache_step;
     out->detail = meta.cache_detail;
-    out->places = m->taken_count;
+    out->places = a.met->taken_count;
     out->rays = a.rays;
     return status;
 }
@@ -141,12 +198,13 @@ static vit_status find(const occlusion_input *in, const cache_sights *sights, ca
 vit_status occlusion_find(const occlusion_input *in, occlusion *out, vit_text *why) {
     const double began = progress_now();
     cache_sights sights = {0};
-    cache_met met = {0};
+    cache_met met[2] = {{0}};
     memset(out, 0, sizeof *out);
     vit_status status = cache_sights_find(&in->seen, &sights, why);
     if (status == VIT_OK)
-        status = find(in, &sights, &met, out, why);
-    cache_met_free(&met);
+        status = find(in, &sights, met, out, why);
+    cache_met_free(met);
+    cache_met_free(met + 1);
     cache_sights_free(&sights);
     out->seconds = progress_now() - began;
     return status;

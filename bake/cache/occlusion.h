@@ -18,6 +18,7 @@ typedef struct occlusion {
     cache_table table;                    /* section CACH */
     uint32_t levels;                      /* of detail */
     float step, detail;                   /* vit_scene.cache_step, cache_detail */
+    uint32_t parted;                      /* cells, by walls */
     uint32_t cells, points, places, rays; /* points that something is known at; places asked, with so many rays each */
     double off;                           /* root of the mean square of the error at places that were asked and not used */
     double seconds;                       /* that it took */

@@ -5,6 +5,7 @@
 
 #include "common/kernel_math.h"
 #include "vitrine_pack.h"
+#include <stdbool.h>
 
 /* Where a place is among the boxes of a level. */
 typedef struct cache_place {
@@ -37,7 +38,27 @@ static inline uint32_t cache_tag(const int32_t cell[3]) {
            VIT_CACHE_TAG;
 }
 
-/* side: 2 axis, and 1 more where the normal's component is negative. */
+/* A plane that parts a cell, as its record has it (kernels/cache_cell.clh). */
+typedef struct cache_plane {
+    uint32_t normal; /* 0: there is none */
+    float from;
+} cache_plane;
+
+static inline bool cache_before(const cache_plane *p, const float at[3]) {
+    float n[3];
+    for (int k = 0; k < 3; k++)
+        n[k] = (float)((int)(p->normal >> 10 * k & 1023u) - VIT_CACHE_NORMAL);
+    return fmaf(n[0], at[0], fmaf(n[1], at[1], fmaf(n[2], at[2], p->from))) >= 0.0f;
+}
+
+/* From the corner of the cell, in boxes. */
+static inline void cache_from_corner(const cache_place *p, const int32_t cell[3], float at[3]) {
+    for (int k = 0; k < 3; k++)
+        at[k] = (float)(p->box[k] - 2 * cell[k]) + p->in[k];
+}
+
+/* side: 2 axis, and 1 more where the normal's component is negative; of a parted cell's parts VIT_CACHE_SIDES more and twice as
+ * many. */
 static inline uint32_t cache_key(uint32_t seed, uint32_t side) {
     const uint32_t key = pcg(seed + VIT_CACHE_POINTS + side);
     return key == VIT_CACHE_EMPTY ? 0 : key;

@@ -7,6 +7,11 @@
 #define LEAST_SLOTS (1u << 12)
 #define LEAST_WEIGHT 1e-6f /* of all: points that count less are not read */
 
+typedef struct reader {
+    const vit_scene *meta;
+    const cache_walls *walls;
+} reader;
+
 /* A reading before its cell has a number. */
 typedef struct reading {
     cache_cell cell;
@@ -70,9 +75,22 @@ static uint32_t number_of(cache_met *m, const cache_cell *c) {
     return m->cell_count++;
 }
 
+/* Of a cell that a wall parts the part that the place is in. */
+static void choose_part(const cache_walls *w, const cache_place *place, cache_cell *cell) {
+    const cache_met *m = w->met;
+    uint32_t at = slot_of(m, cell);
+    while (m->slots[at] != VIT_NONE && !is_cell(m->cells + m->slots[at], cell))
+        at = (at + 1) & (m->slot_count - 1);
+    if (m->slots[at] == VIT_NONE || w->plane[m->slots[at]].normal == 0)
+        return;
+    float from[3];
+    cache_from_corner(place, cell->at, from);
+    cell->side += (cache_before(w->plane + m->slots[at], from) ? 2 : 1) * VIT_CACHE_SIDES;
+}
+
 /* Readings of a place at a level, behind `count` others; returns how many there are then. */
-static uint32_t read_level(const vit_scene *s, const cache_sight *at, uint32_t level, float part, reading *out,
-                           uint32_t count) {
+static uint32_t read_level(const reader *r, const cache_sight *at, uint32_t level, float part, reading *out, uint32_t count) {
+    const vit_scene *s = r->meta;
     const float p[3] = {at->position.x, at->position.y, at->position.z}, n[3] = {at->normal.x, at->normal.y, at->normal.z};
     const cache_place place = cache_place_of(p, 1.0f / s->cache_step * (1.0f / (float)(1u << level)));
     for (int box = 0; box < 27; box++) {
@@ -88,6 +106,8 @@ static uint32_t read_level(const vit_scene *s, const cache_sight *at, uint32_t l
         for (uint32_t axis = 0; axis < 3 && weight > 0.0f; axis++) {
             const float share = weight * cache_share(n[axis]);
             cell.side = 2 * axis + (n[axis] < 0.0f);
+            if (share > 0.0f && r->walls)
+                choose_part(r->walls, &place, &cell);
             if (share > 0.0f)
                 out[count++] = (reading){cell, q, share};
         }
@@ -96,13 +116,13 @@ static uint32_t read_level(const vit_scene *s, const cache_sight *at, uint32_t l
 }
 
 /* All readings of a place, weights adding up to 1. */
-static uint32_t read_place(const vit_scene *s, const cache_sight *at, reading *out) {
+static uint32_t read_place(const reader *r, const cache_sight *at, reading *out) {
     float next;
     double sum = 0.0;
-    const uint32_t level = cache_level(s, at->distance, &next);
-    uint32_t count = read_level(s, at, level, 1.0f - next, out, 0), kept = 0;
+    const uint32_t level = cache_level(r->meta, at->distance, &next);
+    uint32_t count = read_level(r, at, level, 1.0f - next, out, 0), kept = 0;
     if (next > 0.0f)
-        count = read_level(s, at, level + 1, next, out, count);
+        count = read_level(r, at, level + 1, next, out, count);
     for (uint32_t i = 0; i < count; i++)
         sum += (double)out[i].weight;
     for (uint32_t i = 0; i < count; i++) {
@@ -143,14 +163,16 @@ static bool take(cache_met *m, uint32_t sight, const reading *read, uint32_t cou
     return true;
 }
 
-vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, cache_met *out, vit_text *why) {
+vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, const cache_walls *walls,
+                          cache_met *out, vit_text *why) {
+    const reader r = {meta, walls};
     reading read[CACHE_MOST_READ];
     memset(out, 0, sizeof *out);
     out->taken = malloc((sights->count + 1u) * sizeof *out->taken);
     out->first = malloc((sights->count + 1u) * sizeof *out->first);
     bool holds = out->taken && out->first && grow_slots(out);
     for (uint32_t i = 0; i < sights->count && holds; i++)
-        holds = take(out, i, read, read_place(meta, sights->sight + i, read), enough);
+        holds = take(out, i, read, read_place(&r, sights->sight + i, read), enough);
     if (!holds) {
         cache_met_free(out);
         return bake_fail(why, VIT_FAILED, "out of memory");

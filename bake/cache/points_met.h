@@ -2,6 +2,7 @@
 #ifndef VIT_CACHE_POINTS_MET_H
 #define VIT_CACHE_POINTS_MET_H
 
+#include "cache/points.h"
 #include "cache/sights.h"
 
 #define CACHE_MOST_READ (2u * 3u * 27u) /* points that a place reads: of two levels and three sides */
@@ -9,7 +10,7 @@
 /* A cell that some place reads. */
 typedef struct cache_cell {
     int32_t at[3];        /* cells from the origin, of its level */
-    uint32_t level, side; /* VIT_CACHE_SIDES */
+    uint32_t level, side; /* VIT_CACHE_SIDES; of a part more: cache_key() */
 } cache_cell;
 
 /* A point and its weight. */
@@ -30,9 +31,18 @@ typedef struct cache_met {
     size_t read_count, read_room;
 } cache_met;
 
+/* Cells that walls part. */
+typedef struct cache_walls {
+    const cache_met *met;
+    cache_plane *plane; /* a cell of `met` */
+    uint32_t count;     /* cells that have one */
+} cache_walls;
+
 /* Goes through the sights in their order and takes those that read a point which less than `enough` before it read. meta:
- * cache_levels, cache_step, cache_detail. VIT_FAILED: out of memory. */
-vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, cache_met *out, vit_text *why);
+ * cache_levels, cache_step, cache_detail. walls: places read parts of these cells; NULL: there are none. VIT_FAILED: out of
+ * memory. */
+vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, const cache_walls *walls,
+                          cache_met *out, vit_text *why);
 void cache_met_free(cache_met *m);
 
 #endif

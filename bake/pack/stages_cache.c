@@ -39,15 +39,17 @@ vit_status stage_cache(bake *b, vit_text *why) {
     c->cache_detail = o->detail;
     if (in.live) {
         c->cache_error = (float)in.error;
-        progress_line(p->progress, false, "ambient light: %u cells of %u levels, %u bytes (longest look-up %u, %u dropped)",
-                      o->cells, o->levels, (unsigned)(o->table.count * sizeof *o->table.records), c->cache_probes,
-                      o->table.dropped);
+        progress_line(
+            p->progress, false,
+            "ambient light: %u cells of %u levels, %u of them parted by walls, %u bytes (longest look-up %u, %u dropped)",
+            o->cells, o->levels, o->parted, (unsigned)(o->table.count * sizeof *o->table.records), c->cache_probes,
+            o->table.dropped);
         return VIT_OK;
     }
     progress_line(p->progress, false,
-                  "ambient light: %u points in %u cells of %u levels, %u bytes (longest look-up %u, %u dropped), "
-                  "%u places x %u rays, off by %.3f of all light",
-                  o->points, o->cells, o->levels, (unsigned)(o->table.count * sizeof *o->table.records), c->cache_probes,
-                  o->table.dropped, o->places, o->rays, o->off);
+                  "ambient light: %u points in %u cells of %u levels, %u of them parted by walls, %u bytes "
+                  "(longest look-up %u, %u dropped), %u places x %u rays, off by %.3f of all light",
+                  o->points, o->cells, o->levels, o->parted, (unsigned)(o->table.count * sizeof *o->table.records),
+                  c->cache_probes, o->table.dropped, o->places, o->rays, o->off);
     return VIT_OK;
 }

@@ -83,7 +83,7 @@ static uint32_t best_of_points(const moment *right, double spacing, double *ligh
     const vit_scene meta = levels_of(&s, spacing);
     cache_met met = {0};
     double held_out;
-    if (cache_met_find(&meta, &s, 255, &met, &why) != VIT_OK)
+    if (cache_met_find(&meta, &s, 255, NULL, &met, &why) != VIT_OK)
         bench_fail("%s", why.text);
     for (size_t k = 0; k < 3; k++) {
         for (uint32_t row = 0; row < met.taken_count; row++)

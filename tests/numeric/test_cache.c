@@ -96,7 +96,7 @@ static void put_places(kind of, double from) {
 
 /* What a point knows follows from its cell's key, so that who works it out needs no table. */
 static uint32_t code_of(uint32_t key, uint32_t q) {
-    return 1 + pcg(key + q) % VIT_CACHE_CODE;
+    return 1 + pcg(key + q) % VIT_CACHE_MOST;
 }
 
 static vit_cache_cell cell_of(const cache_cell *c) {
@@ -113,7 +113,7 @@ static void open_lab(float step, uint32_t levels, kind of, double from) {
     it.scene = (vit_scene){.cache_levels = levels, .cache_step = step, .cache_detail = 1.0f};
     put_places(of, from);
     const cache_sights sights = {.sight = it.sight, .count = PLACES};
-    assert_int_equal(cache_met_find(&it.scene, &sights, 255, &it.met, &why), VIT_OK);
+    assert_int_equal(cache_met_find(&it.scene, &sights, 255, NULL, &it.met, &why), VIT_OK);
 }
 
 static vit_cache_cell *cells_of(void) {

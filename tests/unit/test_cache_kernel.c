@@ -23,7 +23,8 @@ enum { PLACES = 4096 };
 typedef struct lab {
     vit_scene scene;
     cache_sights sights;
-    cache_met met;
+    cache_met met, whole;
+    cache_walls walls; /* of `whole`'s cells; none: `met` is of whole ones itself */
     cache_table table;
     float places[7 * PLACES], open[PLACES];
 } lab;
@@ -51,6 +52,36 @@ static cache_sight place(uint32_t i, float step, float farthest) {
     return (cache_sight){vec3_load(p), normal, normal, farthest * random_unit()};
 }
 
+/* Every third cell gets a plane through its middle part, in any direction or along an axis. */
+static void part_cells(lab *l) {
+    vit_text why;
+    l->whole = l->met;
+    l->walls = (cache_walls){.met = &l->whole, .plane = calloc(l->met.cell_count + 1, sizeof *l->walls.plane)};
+    assert_non_null(l->walls.plane);
+    for (uint32_t i = 0; i < l->whole.cell_count; i += 3) {
+        const uint32_t random = pcg(i), axis = 10 * (i % 9 / 3);
+        const uint32_t normal = i % 2 ? random & 0x3fffffffu : (0x20080200u & ~(1023u << axis)) | 1023u << axis;
+        l->walls.plane[i] = (cache_plane){normal, i % 2 ? -(float)(random >> 22) : -511.0f * (float)(random >> 31)};
+        l->walls.count++;
+    }
+    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, &l->walls, &l->met, &why), VIT_OK);
+    assert_true(l->met.cell_count > l->whole.cell_count);
+}
+
+/* Records of the planes; returns their number. */
+static uint32_t put_planes(const lab *l, vit_cache_cell *cells) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; l->walls.count && i < l->whole.cell_count; i++)
+        if (l->walls.plane[i].normal) {
+            const cache_cell *c = &l->whole.cells[i];
+            uint32_t from;
+            memcpy(&from, &l->walls.plane[i].from, sizeof from);
+            cells[count++] = (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side),
+                                              {l->walls.plane[i].normal, from, cache_tag(c->at) | VIT_CACHE_PARTED}};
+        }
+    return count;
+}
+
 static lab *open_lab(float step, uint32_t levels, float farthest) {
     lab *l = calloc(1, sizeof *l);
     vit_text why;
@@ -66,7 +97,7 @@ static lab *open_lab(float step, uint32_t levels, float farthest) {
         for (int k = 0; k < 7; k++)
             l->places[k * PLACES + (int)i] = plane[k];
     }
-    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, &l->met, &why), VIT_OK);
+    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, NULL, &l->met, &why), VIT_OK);
     assert_int_equal(l->met.taken_count, PLACES);
     return l;
 }
@@ -74,7 +105,7 @@ static lab *open_lab(float step, uint32_t levels, float farthest) {
 /* Cells with the values of points, of which every `hole`-th knows nothing. */
 static void fill(lab *l, uint32_t (*code)(uint32_t point), uint32_t hole) {
     vit_text why;
-    vit_cache_cell *cells = calloc(l->met.cell_count + 1, sizeof *cells);
+    vit_cache_cell *cells = calloc(l->met.cell_count + l->walls.count + 1, sizeof *cells);
     assert_non_null(cells);
     for (uint32_t i = 0; i < l->met.cell_count; i++) {
         const cache_cell *c = &l->met.cells[i];
@@ -83,9 +114,10 @@ static void fill(lab *l, uint32_t (*code)(uint32_t point), uint32_t hole) {
             if (hole == 0 || (i * VIT_CACHE_POINTS + q) % hole != 0)
                 cells[i].word[q / 3] |= code(i * VIT_CACHE_POINTS + q) << q % 3 * 10;
     }
-    assert_int_equal(cache_table_fit(cells, l->met.cell_count, &l->table, &why), VIT_OK);
+    const uint32_t count = l->met.cell_count + put_planes(l, cells + l->met.cell_count);
+    assert_int_equal(cache_table_fit(cells, count, &l->table, &why), VIT_OK);
     assert_int_equal(l->table.dropped, 0);
-    assert_int_equal(l->table.filled, l->met.cell_count); /* no two cells have key and tag in common */
+    assert_int_equal(l->table.filled, count); /* no two cells have key and tag in common */
     free(cells);
     l->scene.cache_cells = l->table.count;
     l->scene.cache_probes = l->table.longest;
@@ -95,12 +127,14 @@ static void fill(lab *l, uint32_t (*code)(uint32_t point), uint32_t hole) {
 static void close_lab(lab *l) {
     cache_table_free(&l->table);
     cache_met_free(&l->met);
+    cache_met_free(&l->whole);
+    free(l->walls.plane);
     cache_sights_free(&l->sights);
     free(l);
 }
 
 static uint32_t any_code(uint32_t point) {
-    return 1 + pcg(point) % VIT_CACHE_CODE;
+    return 1 + pcg(point) % VIT_CACHE_MOST;
 }
 
 static uint32_t code_of_half(uint32_t point) {
@@ -126,8 +160,11 @@ static void the_kernel_reads_what_the_baker_wrote(void **state) {
     (void)state;
     static const float steps[] = {1e-3f, 0.37f, 1e3f};
     for (size_t s = 0; s < sizeof steps / sizeof *steps; s++)
-        for (uint32_t hole = 0; hole <= 3; hole += 3) {
+        for (uint32_t run = 0; run < 4; run++) {
+            const uint32_t hole = run % 2 * 3;
             lab *l = open_lab(steps[s], 4, 12.0f);
+            if (run >= 2)
+                part_cells(l);
             fill(l, any_code, hole);
             uint32_t known = 0;
             for (uint32_t i = 0; i < PLACES; i++) {
@@ -230,7 +267,7 @@ static void levels_change_without_a_jump(void **state) {
         }
         l->places[6 * PLACES + i] = l->sights.sight[i].distance;
     }
-    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, &l->met, &why), VIT_OK);
+    assert_int_equal(cache_met_find(&l->scene, &l->sights, 255, NULL, &l->met, &why), VIT_OK);
     fill(l, any_code, 0);
     float least = 1.0f, most = 0.0f;
     for (uint32_t i = 1; i < PLACES; i++) {

@@ -43,12 +43,21 @@
     X(CACH, the_same_cell_twice, "record 3 is not found behind record 2", im->cache[3].word[2] = im->cache[2].word[2])         \
     X(CACH, bits_that_no_point_has, "record 0: bits that no point has", im->cache[0].word[0] |= 0x40000000)                    \
     X(CACH, bits_of_the_second_word, "record 7: bits that no point has", im->cache[7].word[1] |= 0x80000000)                   \
+    X(CACH, plane_of_no_distance, "record 0: its plane is none", im->cache[0].word[2] |= VIT_CACHE_PARTED,                     \
+      im->cache[0].word[1] = 0x7fffffff)                                                                                       \
+    X(CACH, plane_too_far, "record 0: its plane is none", im->cache[0].word[2] |= VIT_CACHE_PARTED,                            \
+      im->cache[0].word[1] = 0xc5800001)                                                                                       \
+    X(CACH, plane_of_nan, "record 0: its plane is none", im->cache[0].word[2] |= VIT_CACHE_PARTED,                             \
+      im->cache[0].word[1] = 0xffc00000)                                                                                       \
     X(CACH, points_of_no_cell, "record 4: bits that no point has", im->cache[4].word[0] = 1)                                   \
     X(CACH, tag_of_no_cell, "record 6: bits that no point has", im->cache[6].word[2] = VIT_CACHE_TAG)
 
 #define LIMITS(X)                                                                                                              \
     X(a_cell_that_knows_nothing, memset(im->cache[0].word, 0, sizeof im->cache[0].word))                                       \
-    X(every_bit_of_the_last_word, im->cache[7].word[2] = 0xffffffff)                                                           \
+    X(every_bit_of_the_last_word, im->cache[7].word[2] = 0xffffffff, im->cache[7].word[1] = 0x80000000)                        \
+    X(the_farthest_plane, im->cache[0].word[2] |= VIT_CACHE_PARTED, im->cache[0].word[1] = 0xc5800000)                         \
+    X(any_normal, im->cache[0].word[2] |= VIT_CACHE_PARTED, im->cache[0].word[1] = 0xbf800000,                                 \
+      im->cache[0].word[0] = 0xffffffff)                                                                                       \
     X(every_point_the_greatest, im->cache[7].word[0] = im->cache[7].word[1] = 0x3fffffff)                                      \
     X(the_most_levels, im->scene->cache_levels = 16)                                                                           \
     X(more_probes_than_needed, im->scene->cache_probes = 64)                                                                   \
