@@ -20,7 +20,8 @@ typedef struct finding {
     cache_plane *plane;
 } finding;
 
-/* Goes through the reads row by row; `last`, a cell, is the row whose reader is the cell's last one. With `list` NULL counts. */
+/* Goes through the reads row by row; `last`, a cell, is the row whose reader is the cell's last one. With `list` NULL counts.
+ */
 static void collect(const cache_met *m, size_t *next, uint32_t *last, reader *list) {
     memset(last, 0xff, m->cell_count * sizeof *last);
     for (uint32_t row = 0; row < m->taken_count; row++)

@@ -15,7 +15,8 @@ typedef struct cache_walls_input {
 } cache_walls_input;
 
 /* A cell is parted where two places that read it do not see each other for a wall between them, by the plane in the wall's
- * middle: of those met between pairs of places the one that leaves the least variance on its two sides. False: out of memory. */
+ * middle: of those met between pairs of places the one that leaves the least variance on its two sides. False: out of memory.
+ */
 bool cache_walls_find(const cache_walls_input *in, cache_walls *out);
 void cache_walls_free(cache_walls *w);
 

@@ -1,4 +1,5 @@
-/* What is done to the text of COLLADA, X3D, OFF and AMF files before Assimp sees it, on any bytes; Assimp itself is left out. */
+/* What is done to the text of COLLADA, X3D, OFF and AMF files before Assimp sees it, on any bytes; Assimp itself is left
+ * out. */
 #include "fuzz.h"
 #include "import/assimp/assimp_scene.h"
 
