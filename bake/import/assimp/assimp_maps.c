@@ -69,6 +69,16 @@ static bool check_transform(assimp_scene *a, const material_use *use, const stru
            say_once(a, ASSIMP_SAID_TRANSFORM, "offset, scale and rotation of textures are left out", use->m.name);
 }
 
+/* A set's number is the file's own; a mesh with one set has that. Assimp tells which it is from 5.4 on. */
+static bool check_set(assimp_scene *a, const material_use *use, unsigned set) {
+    bool several = false;
+    for (unsigned i = 0; i < a->ai->mNumMeshes; i++)
+        several = several || a->ai->mMeshes[i]->mTextureCoords[1];
+    return !a->other_set || set > 0 || !several ||
+           say_once(a, ASSIMP_SAID_SET, "textures have the first coordinates, though the file says others of some",
+                    use->m.name);
+}
+
 bool assimp_color_map(assimp_scene *a, material_use *use, const struct aiMaterial *ai) {
     static const enum aiTextureType types[2] = {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR};
     for (int i = 0; i < 2; i++) {
@@ -85,7 +95,7 @@ bool assimp_color_map(assimp_scene *a, material_use *use, const struct aiMateria
         if (has_map(ai, types[i], 1, &second) && strcmp(path.data, second.data) != 0 &&
             !say_once(a, ASSIMP_SAID_LAYERS, "of several colour textures only the first is shown", use->m.name))
             return false;
-        return check_transform(a, use, ai, types[i]);
+        return check_set(a, use, set) && check_transform(a, use, ai, types[i]);
     }
     return true;
 }

@@ -14,7 +14,13 @@ typedef struct polygon_cut {
 } polygon_cut;
 
 /* What is said once a file, of all its materials. */
-typedef enum assimp_remark { ASSIMP_SAID_BUMP, ASSIMP_SAID_SPECULAR, ASSIMP_SAID_TRANSFORM, ASSIMP_SAID_LAYERS } assimp_remark;
+typedef enum assimp_remark {
+    ASSIMP_SAID_BUMP,
+    ASSIMP_SAID_SPECULAR,
+    ASSIMP_SAID_TRANSFORM,
+    ASSIMP_SAID_LAYERS,
+    ASSIMP_SAID_SET
+} assimp_remark;
 
 enum { ASSIMP_LOST = 4 }; /* names of elements that are told of */
 
@@ -30,6 +36,7 @@ typedef struct assimp_scene {
     double unit;                /* metres that the head of an X3D file says, or 0 */
     bool bad_unit, bad_axis;    /* what the file says of them is none */
     char amf_unit[64];          /* as the root element of an AMF file has it, or "" */
+    bool other_set;             /* a COLLADA file binds a texture to another set of coordinates than that of number 0 */
     bool vertex_normals;        /* an FBX file has normals by vertex, which not all releases read */
     bool off_colors;            /* an OFF file has some, which are left out */
     bool amf_turns;             /* an AMF file turns instances, which Assimp takes for ways */
@@ -42,7 +49,7 @@ typedef struct assimp_scene {
 struct aiFileIO assimp_files(assimp_scene *a);
 
 /* assimp_text.c: the text of a COLLADA file as Assimp reads it right; `text` has been freed then. Sets a->bad_unit, bad_axis,
- * lost. */
+ * lost, other_set. */
 char *assimp_mend_collada(assimp_scene *a, char *text, size_t *size);
 /* assimp_off.c: sets a->off_colors. */
 void assimp_read_off(assimp_scene *a, const char *text, size_t size);

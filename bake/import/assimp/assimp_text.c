@@ -106,9 +106,19 @@ static char *add_material(char *text, size_t *size) {
     return out;
 }
 
+/* Is a texture bound to a set of coordinates whose number is not 0? */
+static bool binds_other_set(tag_span text) {
+    tag_span tag, value;
+    for (tag_span rest = text; tag_find(rest, "bind_vertex_input", &tag); rest.at = tag.end)
+        if (tag_value(tag, "input_set", &value) && !(value.end - value.at == 1 && *value.at == '0'))
+            return true;
+    return false;
+}
+
 char *assimp_mend_collada(assimp_scene *a, char *text, size_t *size) {
     drop_elements(a, (tag_span){text, text + *size});
     *size = drop_space(text, *size);
     read_asset(a, (tag_span){text, text + *size});
+    a->other_set = binds_other_set((tag_span){text, text + *size});
     return add_material(text, size);
 }
