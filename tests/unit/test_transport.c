@@ -281,6 +281,30 @@ static void light_of_a_spot_close_by_comes_from_where_it_is(void **state) {
     close_lab(&l);
 }
 
+/* Irradiance of places spread over all walls by one lamp, three channels each; all are the caller's. */
+static float *light_of_lamp(const lab *l, const photons_light *lamp, uint32_t reflections, effort e, receiver **at,
+                            uint32_t *count) {
+    const transport_state only = {lamp, 1};
+    *at = spread_receivers(l, e.each, count);
+    float *irradiance = calloc(3 * (size_t)*count, sizeof *irradiance);
+    assert_non_null(irradiance);
+    const transport_input in = {.rays = &l->rays,
+                                .geometry = &l->r->g,
+                                .receivers = *at,
+                                .receiver_count = *count,
+                                .states = &only,
+                                .state_count = 1,
+                                .reflections = reflections,
+                                .cells = e.cells,
+                                .receiver_rays = e.rays,
+                                .bounce_rays = e.bounce_rays,
+                                .looks = LOOKS};
+    transport_report report;
+    vit_text why = {""};
+    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    return irradiance;
+}
+
 enum { ROOMS = 4 };
 
 /* Four rooms, parted by two walls that cross in the middle; a lamp in one. Cells of floor and ceiling go on beneath the walls,
@@ -293,25 +317,9 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
     room_quad(r, (const float[]){-1, -1, 0.05f}, (const float[]){2, 0, 0}, (const float[]){0, 2, 0}, WALLS);
     open_painted(&l, r);
     const photons_light lamp = room_point_light(0.4f, 0.1f, 0.3f, 1);
-    const transport_state only = {&lamp, 1};
     uint32_t count;
-    receiver *at = spread_receivers(&l, 8, &count);
-    float *irradiance = calloc(3 * (size_t)count, sizeof *irradiance);
-    assert_non_null(irradiance);
-    const transport_input in = {.rays = &l.rays,
-                                .geometry = &l.r->g,
-                                .receivers = at,
-                                .receiver_count = count,
-                                .states = &only,
-                                .state_count = 1,
-                                .reflections = TRANSPORT_CONVERGED,
-                                .cells = 256,
-                                .receiver_rays = 512,
-                                .bounce_rays = 65536,
-                                .looks = LOOKS};
-    transport_report report;
-    vit_text why = {""};
-    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    receiver *at;
+    float *irradiance = light_of_lamp(&l, &lamp, TRANSPORT_CONVERGED, (effort){8, 512, 256, 65536}, &at, &count);
     double got[ROOMS] = {0};
     for (uint32_t i = 0; i < count; i++) {
         const vec3 p = vec3_along(side_place(&l.r->g, at[i].side, at[i].b1, at[i].b2), side_face(&l.r->g, at[i].side), 1e-3f);
@@ -335,25 +343,9 @@ static void light_is_never_less_than_none(void **state) {
     room_quad(r, (const float[]){0.07f, -0.98f, -1}, (const float[]){0, 0, 2}, (const float[]){0, 1.98f, 0}, WALLS);
     open_painted(&l, r);
     const photons_light lamp = room_point_light(0.6f, -0.7f, 0.3f, 1);
-    const transport_state only = {&lamp, 1};
     uint32_t count, dark = 0;
-    receiver *at = spread_receivers(&l, 32, &count);
-    float *irradiance = calloc(3 * (size_t)count, sizeof *irradiance);
-    assert_non_null(irradiance);
-    const transport_input in = {.rays = &l.rays,
-                                .geometry = &l.r->g,
-                                .receivers = at,
-                                .receiver_count = count,
-                                .states = &only,
-                                .state_count = 1,
-                                .reflections = 1,
-                                .cells = 256,
-                                .receiver_rays = 64,
-                                .bounce_rays = 1,
-                                .looks = LOOKS};
-    transport_report report;
-    vit_text why = {""};
-    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
+    receiver *at;
+    float *irradiance = light_of_lamp(&l, &lamp, 1, (effort){32, 64, 256, 1}, &at, &count);
     for (uint32_t i = 0; i < 3 * count; i++) {
         assert_true(irradiance[i] >= 0);
         dark += irradiance[i] < 1e-6f;
