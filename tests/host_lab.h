@@ -19,7 +19,8 @@ typedef struct host_lab_mesh {
     const vit_bvh_node *nodes;
 } host_lab_mesh;
 
-/* Kernel functions that bake/ has as C, too: X(name, floats in, floats out); words are passed as the bits of floats. */
+/* Kernel functions that bake/ has as C, too, but for srgb and choose, which tests have in double: X(name, floats in, floats
+ * out); words are passed as the bits of floats. */
 #define HOST_LAB_FUNCTIONS(X)                                                                                                  \
     X(pcg, 1, 1)                                                                                                               \
     X(unit_float, 1, 1)                                                                                                        \
@@ -31,8 +32,8 @@ typedef struct host_lab_mesh {
     X(cosine, 5, 3)                                                                                                            \
     X(place, 3, 2)                                                                                                             \
     X(normal, 1, 3)                                                                                                            \
-    X(choose, 4, 1)                                                                                                            \
     X(srgb, 1, 1)                                                                                                              \
+    X(choose, 4, 1)                                                                                                            \
     X(cone, 3, 1)                                                                                                              \
     X(falloff, 1, 1)                                                                                                           \
     X(left, 1, 1)                                                                                                              \

@@ -205,7 +205,7 @@ static void call_light(host_lab_function f, const host_lab_given *given, const f
 
 static void call(host_lab_function f, const host_lab_given *given, const float *in, uint32_t n, float *out) {
     for (uint i = 0; i < n; i += VIT_LANES)
-        if (f <= HOST_LAB_srgb)
+        if (f < HOST_LAB_cone)
             call_sampling(f, in, n, i, out);
         else
             call_light(f, given, in, n, i, out);
