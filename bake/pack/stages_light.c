@@ -149,7 +149,7 @@ vit_status stage_photons(bake *b, vit_text *why) {
 }
 
 /* "auto" follows the photons that are stored, not the slots there are: many paths may leave the scene. Zones and areas come
- * later: they depend on the radius. */
+ * later: they depend on the radius. So does the cache, for which photons do not ask. */
 vit_status stage_radius(bake *b, vit_text *why) {
     double stored;
     bounds_input *in = &b->bounds;
@@ -157,7 +157,7 @@ vit_status stage_radius(bake *b, vit_text *why) {
         return VIT_OK;
     stages_point(b);
     const uint64_t effects = in->scene->effects;
-    in->scene->effects &= ~(VIT_BIT(ZONES) | VIT_BIT(AREA));
+    in->scene->effects &= ~(VIT_BIT(ZONES) | VIT_BIT(AREA) | vit_effects_upon(VIT_BIT(OCCLUSION)));
     const vit_status status = bounds_count_photons(in, &stored, why);
     in->scene->effects = effects;
     if (status == VIT_OK && stored > 0) {

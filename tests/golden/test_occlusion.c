@@ -183,6 +183,25 @@ static void each_sample_sends_a_ray_and_it_is_counted(void **state) {
         fail_msg("expected %s, got %.40s", wanted, rays);
 }
 
+/* Photons are counted for their radius before there is a cache. */
+static void photons_go_with_it(void **state) {
+    scene_lab *l = *state;
+    char line[512];
+    FILE *f = scene_lab_create(l, "lit.cfg");
+    (void)fprintf(f,
+                  "output: { width = 16; height = 16; fps = 1.0; frames = 2; };\nmeshes = ( { file = \"wall.obj\"; } );\n"
+                  "ambient = [1.0, 1.0, 1.0]; ambient_radius = %g;\n"
+                  "camera: { keys = ( { eye = [1.0, 2.0, 0.0]; target = [1.0, 0.0, 0.0]; up = [0.0, 0.0, -1.0]; } ); };\n"
+                  "lights = ( { type = \"point\"; keys = ( { position = [0.5, 1.0, 0.0]; power = [10.0, 10.0, 10.0]; },"
+                  " { time = 1.0; position = [0.7, 1.0, 0.0]; } ); } );\n",
+                  RADIUS);
+    (void)fclose(f);
+    write_scene(l);
+    scene_lab_bake(l, "lit.cfg", "--photons 1000");
+    (void)snprintf(line, sizeof line, "%s --verify --quiet --device host", scene_lab_path(l, "scene.vit"));
+    scene_lab_run(l, "vitrine-play", line);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(baked_it_is_what_geometry_says),
@@ -191,6 +210,7 @@ int main(void) {
         cmocka_unit_test(frames_do_not_depend_on_what_was_played),
         cmocka_unit_test(rays_end_where_nothing_is_left_to_find_out),
         cmocka_unit_test(each_sample_sends_a_ray_and_it_is_counted),
+        cmocka_unit_test(photons_go_with_it),
     };
     return cmocka_run_group_tests_name("occlusion", tests, scene_lab_set_up, scene_lab_tear_down);
 }
