@@ -158,6 +158,13 @@ static void what_is_asked_for_is_made(void **state) {
     }
 }
 
+static void radiosity_of_lights_that_stay_is_a_basis_and_said(void **state) {
+    scene_lab *l = *state;
+    write_scene(l, "", 2, STILL, "quality: { tile = 16; };\n");
+    bake(l, "--quality stated --receiver-rays 16 --indirect radiosity");
+    assert_true(scene_lab_said(l, "indirect = \"radiosity\": a basis is baked, since no light moves or changes\n"));
+}
+
 /* The line that quality "auto" ends with. */
 static void quality_said(scene_lab *l, char line[1024]) {
     FILE *f = fopen(scene_lab_path(l, "out.txt"), "r");
@@ -271,6 +278,7 @@ int main(void) {
         cmocka_unit_test(irradiance_has_a_bound_in_bytes),
         cmocka_unit_test(radiosity_is_taken_where_irradiance_is_too_much),
         cmocka_unit_test(what_is_asked_for_is_made),
+        cmocka_unit_test(radiosity_of_lights_that_stay_is_a_basis_and_said),
         cmocka_unit_test(a_basis_that_is_wrong_is_refined),
         cmocka_unit_test(a_basis_that_is_wrong_gives_way_to_photons),
     };
