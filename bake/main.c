@@ -111,7 +111,8 @@ static vit_status make_pack(bake *b, vit_text *why) {
                       settings_indirect_name(p->scene.quality.indirect), p->indirect_why);
     if (!p->indirect_why[0] && p->scene.quality.indirect == INDIRECT_RADIOSITY &&
         (b->packed.plan.scene.effects & VIT_BIT(BASIS)))
-        progress_line(&b->progress, false, "indirect = \"radiosity\": a basis is baked, since no light moves or changes");
+        progress_line(&b->progress, false,
+                      "indirect = \"radiosity\": a basis is baked, since no light moves or changes, or nothing reflects it");
     if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     warn_of_missed_effects(b);

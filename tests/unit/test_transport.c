@@ -18,6 +18,11 @@ typedef struct effort {
 enum { CELLS = 8192, LOOKS = 384 };
 static const effort usual = {24, 128, CELLS, 128 * CELLS};
 
+typedef struct places {
+    receiver *each;
+    uint32_t count;
+} places;
+
 /* evenly^2 places on each side that light reaches, each for a like part of its area. */
 static receiver *spread_receivers(const lab *l, uint32_t evenly, uint32_t *count) {
     const uint32_t each = evenly * evenly;
@@ -35,17 +40,16 @@ static receiver *spread_receivers(const lab *l, uint32_t evenly, uint32_t *count
     return all;
 }
 
-/* Power of indirect light that comes to all walls in each state, W a channel. */
-static void arriving(const lab *l, const transport_state *states, uint32_t state_count, uint32_t reflections, effort e,
-                     double *out) {
-    uint32_t count;
-    receiver *places = spread_receivers(l, e.each, &count);
-    float *irradiance = calloc((size_t)count * state_count * 3, sizeof *irradiance);
+/* Irradiance of places spread over all walls, places x states x 3; both are the caller's. */
+static float *light_of(const lab *l, const transport_state *states, uint32_t state_count, uint32_t reflections, effort e,
+                       places *at) {
+    at->each = spread_receivers(l, e.each, &at->count);
+    float *irradiance = calloc((size_t)at->count * state_count * 3, sizeof *irradiance);
     assert_non_null(irradiance);
     const transport_input in = {.rays = &l->rays,
                                 .geometry = &l->r->g,
-                                .receivers = places,
-                                .receiver_count = count,
+                                .receivers = at->each,
+                                .receiver_count = at->count,
                                 .states = states,
                                 .state_count = state_count,
                                 .reflections = reflections,
@@ -57,14 +61,22 @@ static void arriving(const lab *l, const transport_state *states, uint32_t state
     vit_text why = {""};
     if (transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why) != VIT_OK)
         fail_msg("%s", why.text);
+    return irradiance;
+}
+
+/* Power of indirect light that comes to all walls in each state, W a channel. */
+static void arriving(const lab *l, const transport_state *states, uint32_t state_count, uint32_t reflections, effort e,
+                     double *out) {
+    places at;
+    float *irradiance = light_of(l, states, state_count, reflections, e, &at);
     for (uint32_t k = 0; k < 3 * state_count; k++) {
         out[k] = 0.0;
-        for (uint32_t i = 0; i < count; i++)
-            out[k] += (double)irradiance[(size_t)i * state_count * 3 + k] * (double)side_area(&l->r->g, places[i].side) /
+        for (uint32_t i = 0; i < at.count; i++)
+            out[k] += (double)irradiance[(size_t)i * state_count * 3 + k] * (double)side_area(&l->r->g, at.each[i].side) /
                       (e.each * e.each);
     }
     free(irradiance);
-    free(places);
+    free(at.each);
 }
 
 /* What comes of a watt in a closed room whose walls have this albedo. */
@@ -281,30 +293,6 @@ static void light_of_a_spot_close_by_comes_from_where_it_is(void **state) {
     close_lab(&l);
 }
 
-/* Irradiance of places spread over all walls by one lamp, three channels each; all are the caller's. */
-static float *light_of_lamp(const lab *l, const photons_light *lamp, uint32_t reflections, effort e, receiver **at,
-                            uint32_t *count) {
-    const transport_state only = {lamp, 1};
-    *at = spread_receivers(l, e.each, count);
-    float *irradiance = calloc(3 * (size_t)*count, sizeof *irradiance);
-    assert_non_null(irradiance);
-    const transport_input in = {.rays = &l->rays,
-                                .geometry = &l->r->g,
-                                .receivers = *at,
-                                .receiver_count = *count,
-                                .states = &only,
-                                .state_count = 1,
-                                .reflections = reflections,
-                                .cells = e.cells,
-                                .receiver_rays = e.rays,
-                                .bounce_rays = e.bounce_rays,
-                                .looks = LOOKS};
-    transport_report report;
-    vit_text why = {""};
-    assert_int_equal(transport_find(&in, &(transport_light){.irradiance = irradiance}, &report, &why), VIT_OK);
-    return irradiance;
-}
-
 enum { ROOMS = 4 };
 
 /* Four rooms, parted by two walls that cross in the middle; a lamp in one. Cells of floor and ceiling go on beneath the walls,
@@ -317,12 +305,13 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
     room_quad(r, (const float[]){-1, -1, 0.05f}, (const float[]){2, 0, 0}, (const float[]){0, 2, 0}, WALLS);
     open_painted(&l, r);
     const photons_light lamp = room_point_light(0.4f, 0.1f, 0.3f, 1);
-    uint32_t count;
-    receiver *at;
-    float *irradiance = light_of_lamp(&l, &lamp, TRANSPORT_CONVERGED, (effort){8, 512, 256, 65536}, &at, &count);
+    const transport_state only = {&lamp, 1};
+    places at;
+    float *irradiance = light_of(&l, &only, 1, TRANSPORT_CONVERGED, (effort){8, 512, 256, 65536}, &at);
     double got[ROOMS] = {0};
-    for (uint32_t i = 0; i < count; i++) {
-        const vec3 p = vec3_along(side_place(&l.r->g, at[i].side, at[i].b1, at[i].b2), side_face(&l.r->g, at[i].side), 1e-3f);
+    for (uint32_t i = 0; i < at.count; i++) {
+        const receiver *from = at.each + i;
+        const vec3 p = vec3_along(side_place(&l.r->g, from->side, from->b1, from->b2), side_face(&l.r->g, from->side), 1e-3f);
         got[2 * (p.x < 0.07f) + (p.z < 0.05f)] += (double)irradiance[3 * i];
     }
     print_message("light of the dark rooms over that of the lit one: %g %g %g\n", got[1] / got[0], got[2] / got[0],
@@ -330,7 +319,7 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
     for (int i = 1; i < ROOMS; i++)
         assert_true(got[i] < 1e-3 * got[0]);
     free(irradiance);
-    free(at);
+    free(at.each);
     close_lab(&l);
 }
 
@@ -343,17 +332,18 @@ static void light_is_never_less_than_none(void **state) {
     room_quad(r, (const float[]){0.07f, -0.98f, -1}, (const float[]){0, 0, 2}, (const float[]){0, 1.98f, 0}, WALLS);
     open_painted(&l, r);
     const photons_light lamp = room_point_light(0.6f, -0.7f, 0.3f, 1);
-    uint32_t count, dark = 0;
-    receiver *at;
-    float *irradiance = light_of_lamp(&l, &lamp, 1, (effort){32, 64, 256, 1}, &at, &count);
-    for (uint32_t i = 0; i < 3 * count; i++) {
+    const transport_state only = {&lamp, 1};
+    places at;
+    uint32_t dark = 0;
+    float *irradiance = light_of(&l, &only, 1, 1, (effort){32, 64, 256, 1}, &at);
+    for (uint32_t i = 0; i < 3 * at.count; i++) {
         assert_true(irradiance[i] >= 0);
         dark += irradiance[i] < 1e-6f;
     }
-    print_message("%u of %u without light\n", dark, 3 * count);
+    print_message("%u of %u without light\n", dark, 3 * at.count);
     assert_true(dark > 0);
     free(irradiance);
-    free(at);
+    free(at.each);
     close_lab(&l);
 }
 
