@@ -41,6 +41,34 @@ static void warn_of_missed_effects(bake *b) {
                           e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
 }
 
+/* Settings of light that is baked, stated though there is no such light: a warning each, with --strict an error. */
+static vit_status check_idle_settings(bake *b, vit_text *why) {
+    static const char no_radius[] = "there is no ambient light of a radius",
+                      no_light[] = "no matt surface takes light of the sky or of area lights";
+    static const struct {
+        int setting;
+        uint64_t effects; /* one of which it needs */
+        const char *lacks;
+    } all[] = {{SETTING_AT_cache, VIT_BIT(OCCLUSION), no_radius},
+               {SETTING_AT_cache_spacing, VIT_BIT(OCCLUSION), no_radius},
+               {SETTING_AT_cache_error, VIT_BIT(OCCLUSION), no_radius},
+               {SETTING_AT_lightmap, VIT_BIT(LIGHTMAP), no_light},
+               {SETTING_AT_lightmap_spacing, VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT), no_light},
+               {SETTING_AT_lightmap_error, VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT), no_light}};
+    const scene *s = &b->pipeline.scene;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        const bool stated = s->quality_kept >> all[i].setting & 1,
+                   open = all[i].setting == SETTING_AT_lightmap && s->quality.lightmap != LIGHTMAP_BAKED;
+        const char *word = setting_rows[all[i].setting].field.name;
+        if (!stated || open || b->packed.plan.scene.effects & all[i].effects)
+            continue;
+        if (b->options.strict)
+            return bake_fail_plain(why, VIT_BAD_INPUT, "%.200s: '%s' does nothing: %s", b->options.input, word, all[i].lacks);
+        progress_line(&b->progress, true, "warning: '%s' does nothing: %s", word, all[i].lacks);
+    }
+    return VIT_OK;
+}
+
 static bool fits(const options *o) {
     return o->fit > 0 || o->fit_work > 0;
 }
@@ -116,6 +144,9 @@ static vit_status make_pack(bake *b, vit_text *why) {
     if (plan_leaves_area_out(&p->scene.quality)) /* as fitted */
         progress_line(&b->progress, true, "warning: effective_area does nothing for buckets within zones");
     warn_of_missed_effects(b);
+    status = check_idle_settings(b, why);
+    if (status != VIT_OK)
+        return status;
     if (chooses)
         auto_say(p, &b->packed, &b->chosen);
     return p->scene.check && !chooses ? check_pack(p, &b->packed, why) : VIT_OK;

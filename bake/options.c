@@ -217,7 +217,7 @@ void options_help(void) {
         "                        what is not done\n"
         "  --strict              a missing texture, what a mesh file says and is not done, a material of the scene file that "
         "no mesh has,\n"
-        "                        is an error, not a warning\n"
+        "                        a setting of the cache or the lightmap that does nothing, is an error, not a warning\n"
         "  --all-formats         golden hashes of RGB565 and RGBA32F frames too\n"
         "  --no-check            does not compare the picture with path tracing (else seconds), and so chooses no quality "
         "either\n"

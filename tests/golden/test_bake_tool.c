@@ -307,6 +307,42 @@ static void options_choose_effects_as_the_scene_file_does(void **state) {
     assert_non_null(strstr(explained("  glass "), "not called for"));
 }
 
+/* What is stated of light that a scene lacks. What is open or by default says nothing, nor where there is such light. */
+static void settings_of_light_that_a_scene_lacks_are_an_error_only_if_strict(void **state) {
+    (void)state;
+    static const char *const idle[][2] = {
+        {" --cache progressive", "'cache' does nothing: there is no ambient light of a radius"},
+        {" --cache-spacing 4", "'cache_spacing' does nothing: there is no ambient light of a radius"},
+        {" --cache-error 0.1", "'cache_error' does nothing: there is no ambient light of a radius"},
+        {" --lightmap baked", "'lightmap' does nothing: no matt surface takes light of the sky or of area lights"},
+        {" --lightmap-spacing 4", "'lightmap_spacing' does nothing: no matt surface takes"},
+        {" --lightmap-error 0.1", "'lightmap_error' does nothing: no matt surface takes"},
+    };
+    static const char text[] =
+        "output: { width = 16; height = 16; frames = 1; };\nmeshes = ( { file = \"room.obj\"; } );\n" CAMERA
+        "ambient = [0.5, 0.5, 0.5]; ambient_radius = 0.5; background = [1.0, 1.0, 1.0];\n"
+        "sky: { light = true; }; quality: { cache = \"baked\"; lightmap = \"baked\"; };\n";
+    for (size_t i = 0; i < sizeof idle / sizeof idle[0]; i++) {
+        char line[256];
+        (void)snprintf(line, sizeof line, SMALL " --strict%s" OUT, idle[i][0]);
+        bake_refuses(line, VIT_BAD_INPUT, idle[i][1]);
+        tool(&r, TOOL_BAKE " --quiet " SMALL "%s" OUT, idle[i][0]);
+        tool_succeeds(&r);
+        const char *warning = strstr(r.err, "warning: ");
+        assert_true(warning && strstr(warning, idle[i][1]) && !strstr(warning + 1, "warning: "));
+        assert_int_equal(empty(FOLDER), 1);
+    }
+    tool(&r, TOOL_BAKE " --quiet " SMALL " --strict --lightmap auto" OUT);
+    tool_succeeds(&r);
+    assert_null(strstr(r.err, "does nothing"));
+    put_bytes(TEST_PACKS "/lit.cfg", text, sizeof text - 1);
+    tool(&r, TOOL_BAKE " --quiet --no-check --strict " TEST_PACKS "/lit.cfg" OUT);
+    tool_succeeds(&r);
+    assert_null(strstr(r.err, "does nothing"));
+    assert_int_equal(empty(FOLDER), 1);
+    (void)unlink(TEST_PACKS "/lit.cfg");
+}
+
 static void a_device_that_is_not_there_is_a_failure(void **state) {
     (void)state;
     tool(&r, TOOL_PLAY " --quiet %s --device 900", test_pack("33x47"));
@@ -331,6 +367,7 @@ int main(void) {
         cmocka_unit_test(an_interrupted_bake_exits_with_1_and_leaves_no_file),
         cmocka_unit_test(explain_writes_no_file_and_names_every_buffer),
         cmocka_unit_test(options_choose_effects_as_the_scene_file_does),
+        cmocka_unit_test(settings_of_light_that_a_scene_lacks_are_an_error_only_if_strict),
         cmocka_unit_test(a_device_that_is_not_there_is_a_failure),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
