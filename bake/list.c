@@ -51,6 +51,8 @@ static void print_materials(const model *m, FILE *to) {
         if (k->specular[0] > 0.0f || k->specular[1] > 0.0f || k->specular[2] > 0.0f) {
             (void)fputs(", specular ", to);
             print_floats(to, k->specular);
+            if (k->lobe_alpha > 0.0f)
+                (void)fprintf(to, " of GGX, alpha %.3g", (double)k->lobe_alpha);
         }
         if (k->emission[0] > 0.0f || k->emission[1] > 0.0f || k->emission[2] > 0.0f) {
             (void)fputs(", emission ", to);

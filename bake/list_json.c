@@ -49,7 +49,7 @@ static void materials(const model *m, FILE *to) {
         floats(to, "albedo", k->albedo);
         (void)fputs(", ", to);
         floats(to, "specular", k->specular);
-        (void)fputs(", ", to);
+        (void)fprintf(to, ", \"ggx_alpha\": %.9g, ", (double)k->lobe_alpha);
         floats(to, "emission", k->emission);
         (void)fputs(", ", to);
         if (k->image >= 0)

@@ -34,8 +34,10 @@ typedef struct lit_sample {
     li hit;
     lv3 p, n, v;      /* position; unit normal, unit direction to where it is seen from (with specular reflection) */
     lv3 face;         /* normal of the triangle on the seen side, of any length (with smooth normals) */
-    lf exponent;      /* of the lobe */
-    lv3 matt, glossy; /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr) */
+    lf exponent;      /* of the lobe; -alpha of a GGX lobe */
+    lv3 specular;     /* of the lobe, at normal incidence (with effect ggx) */
+    lv3 matt, glossy; /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr); with
+                       * effect ggx times its reflectance too, and matt light is what Fresnel's term leaves */
 } lit_sample;
 
 /* The samples' triangles' normals on the side that p is on. */
@@ -59,7 +61,7 @@ static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETER
     s.hit = hit;
     s.p = sample_position(scene, position, first);
     s.n = l_decode_normal(L_LOAD(normal + first));
-    s.matt = s.glossy = s.v = s.face = lv3_set(L_F(0), L_F(0), L_F(0));
+    s.matt = s.glossy = s.specular = s.v = s.face = lv3_set(L_F(0), L_F(0), L_F(0));
     if (VIT_EFFECT_SMOOTH)
         s.face = lit_face(triangles, hit, L_AS_INT(L_LOAD(hit_triangle + first)), s.p);
     s.exponent = L_F(1);
@@ -67,6 +69,8 @@ static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETER
         s.v = VIT_EFFECT_CHAINS ? lv3_scale(chain_direction(rays, n, first), L_F(-1))
                                 : lv3_unit(lv3_sub(lv3_load((cameras + frame)->eye), s.p));
         s.exponent = L_AS_FLOAT(L_LOAD(specular + n + first));
+        if (VIT_EFFECT_GGX)
+            s.specular = l_decode_albedo(L_LOAD(specular + first));
     }
     return s;
 }
@@ -80,9 +84,25 @@ static inline lf lit_cosine(const lit_sample *s, lv3 l) {
     return cosine;
 }
 
+/* The same as lit_add where some lobe is of microfacets. */
+static inline void lit_add_facets(lit_sample *s, lv3 l, lv3 light) {
+    li facets = L_LT(s->exponent, L_F(0));
+    specular_facets f = specular_at_facets(s->n, l, s->v, l_sel(facets, -s->exponent, L_F(1)));
+    lf lobe = l_sel(facets, f.lobe, specular_lobe(s->n, l, s->v, l_sel(facets, L_F(1), s->exponent)));
+    lf grazing = l_sel(facets, f.grazing, L_F(0));
+    lv3 g = s->specular;
+    g = lv3_set(fma(1.0f - g.x, grazing, g.x), fma(1.0f - g.y, grazing, g.y), fma(1.0f - g.z, grazing, g.z));
+    s->glossy = lv3_along(s->glossy, lv3_set(light.x * g.x, light.y * g.y, light.z * g.z), lobe);
+    s->matt = lv3_along(s->matt, light, 1.0f - grazing);
+}
+
 /* Adds light of power `intensity` from unit direction l: e, irradiance a unit of it. */
 static inline void lit_add(lit_sample *s, lv3 l, lf e, lv3 intensity) {
     lv3 light = lv3_set(intensity.x * e, intensity.y * e, intensity.z * e);
+    if (VIT_EFFECT_GGX) {
+        lit_add_facets(s, l, light);
+        return;
+    }
     s->matt = lv3_set(s->matt.x + light.x, s->matt.y + light.y, s->matt.z + light.z);
     if (VIT_EFFECT_SPECULAR) {
         lf lobe = specular_lobe(s->n, l, s->v, s->exponent);
@@ -97,7 +117,7 @@ static inline void lit_store(global const vit_scene *scene, const lit_sample *s,
     lv3 a = lv3_scale(l_decode_albedo(L_LOAD(albedo + first)), L_F(VIT_INV_PI)), out = lv3_load_planes(direct, n, first);
     out = lv3_set(fma(a.x, s->matt.x, out.x), fma(a.y, s->matt.y, out.y), fma(a.z, s->matt.z, out.z));
     if (VIT_EFFECT_SPECULAR) {
-        lv3 g = l_decode_albedo(L_LOAD(specular + first));
+        lv3 g = VIT_EFFECT_GGX ? lv3_set(L_F(1), L_F(1), L_F(1)) : l_decode_albedo(L_LOAD(specular + first));
         out = lv3_set(fma(g.x, s->glossy.x, out.x), fma(g.y, s->glossy.y, out.y), fma(g.z, s->glossy.z, out.z));
     }
     lv3_store_planes(out, direct, n, first);
@@ -306,6 +326,7 @@ kernel void lightmap_rays(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const v
         return;
     WORK_BEGIN
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
+    s.exponent = L_F(1); /* as what is baked: matt light without Fresnel's term; the lobe's is left out below */
     for (int set = 0; set < VIT_PATTERNS; set++) {
         if (VIT_EFFECT_AREA_LIGHTS)
             lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, L_I(set), triangle, &s WORK_PASS);

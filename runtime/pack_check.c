@@ -137,7 +137,7 @@ static const char *specular_fault(const vit_material *m) {
         return "lights must be 0 or 1";
     if (!in_range(m->near2, 0.0f, m->lights ? FLT_MAX : 0.0f))
         return "near2 must be finite and >= 0, and 0 where nothing shines";
-    return m->pad == 0 ? 0 : "padding is not 0";
+    return m->alpha == 0.0f || in_range(m->alpha, VIT_MIN_ALPHA, 1.0f) ? 0 : "alpha must be 0, or in 1/128..1";
 }
 
 vit_status vit_pack_check_MATL(const vit_pack *p, vit_text *why) {

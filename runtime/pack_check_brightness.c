@@ -10,6 +10,7 @@
 
 #define PI 3.14159265358979
 #define LEAST_AREA_INVERSE 1024.0           /* above 1 / (VIT_CELL_AREA_LEAST^2 VIT_CELL_AREA_SCALE) */
+#define MOST_SMITH 5.1e5                    /* above 0.5 / SPECULAR_GRAZING */
 #define MOST_LIGHT ((double)FLT_MAX * 0.25) /* the rest is for roundings */
 _Static_assert(VIT_CELL_AREA_LEAST *VIT_CELL_AREA_LEAST * 4 * 1024 > 511 * 511, "LEAST_AREA_INVERSE is no less");
 
@@ -25,7 +26,10 @@ static void look_at_materials(const vit_pack *p, double *peak, double *own) {
     *own = 0.0;
     for (vit_u32 i = 0; i < s->materials; i++) {
         const vit_material *m = VIT_RECORD(vit_material, (const vit_material *)p->section[VIT_SECTION_MATL], i);
-        const double lobe = s->effects & VIT_BIT(SPECULAR) ? (m->exponent + 2.0) / (2.0 * PI) : 0.0, e = largest(m->emission);
+        const double phong = s->effects & VIT_BIT(SPECULAR) ? (m->exponent + 2.0) / (2.0 * PI) : 0.0, e = largest(m->emission);
+        const double facets = /* of D, times that of V: kernels/specular.clh */
+            s->effects & VIT_BIT(GGX) && m->alpha > 0.0f ? MOST_SMITH / (PI * m->alpha * m->alpha) : 0.0;
+        const double lobe = facets > phong ? facets : phong;
         if (lobe + 1.0 / PI > *peak)
             *peak = lobe + 1.0 / PI;
         if (e > *own)

@@ -57,7 +57,7 @@ ambient = [0.02, 0.02, 0.03]; ambient_radius = 0.4;
 materials = (
     { name = "mirror_silver"; kind = "mirror"; specular = [0.9, 0.9, 0.9]; }, { name = "mirror_gold"; kind = "thin_glass"; },
     { name = "glass_clear"; kind = "glass"; ior = 1.5; }, { name = "glass_green"; kind = "glass"; ior = 1.3; absorption = [1.2, 0.2, 0.8]; },
-    { name = "tile_light"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = "matt_red"; emission = [4.0, 3.0, 2.0]; } );
+    { name = "tile_light"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = "matt_blue"; specular = [0.5, 0.4, 0.3]; roughness = 0.4; }, { name = "matt_red"; emission = [4.0, 3.0, 2.0]; } );
 lights = (
     { type = "spot"; inner = 20.0; outer = 40.0; range = 40.0; keys = ( { position = [-4.5, 7.5, 5.5]; target = [0.0, 0.0, 0.0]; power = [900.0, 900.0, 900.0]; },
                                                                         { time = 1.0; position = [4.5, 7.5, 5.5]; } ); },

@@ -42,12 +42,12 @@ static const char test_packs_bodies[] =
                                         "glass", "1", "2", "3", "4", "5", "6") FACES("chrome", "7", "8", "9", "10", "11", "12");
 static const char test_packs_bodies_materials[] = "newmtl glass\nKd 0.5 0.5 0.5\nnewmtl chrome\nKd 0.5 0.5 0.5\n";
 
-/* All that a scene can call for. */
-#define SPECULAR_SCENE                                                                                                         \
+/* All that a scene can call for. `walls`: more of the material of the walls. */
+#define SPECULAR_SCENE(walls)                                                                                                  \
     "meshes = ( { file = \"room.obj\"; }, { file = \"bodies.obj\"; } );\nambient = [0.02, 0.03, 0.04];\n"                      \
     "ambient_radius = 0.5;\nbackground = [0.2, 0.3, 0.4];\nsky: { light = true; };\n"                                          \
     "materials = ( { name = \"lamp\"; area_light = true; },"                                                                   \
-    " { name = \"floor\"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, { name = \"chrome\"; kind = \"mirror\";"             \
+    " { name = \"floor\"; specular = [0.2, 0.2, 0.2]; exponent = 30.0; }, " walls "{ name = \"chrome\"; kind = \"mirror\";"    \
     " specular = [0.9, 0.8, 0.7]; }, { name = \"glass\"; kind = \"glass\"; ior = 1.5; absorption = [0.5, 0.2, 0.1]; } );\n"    \
     "output: { width = 96; height = 64; frames = 2; };\n"                                                                      \
     "camera: { keys = ( { eye = [0.0, 1.0, 3.0]; target = [0.0, 1.0, 0.0]; fov = 42.0; } ); };\n"                              \
@@ -89,7 +89,10 @@ static const struct {
     {"still.cfg", "meshes = ( { file = \"room.obj\"; } );\n" ROOM_VIEW(ROOM_STILL)},
     {"bodies.obj", test_packs_bodies},
     {"bodies.mtl", test_packs_bodies_materials},
-    {"shine.cfg", SPECULAR_SCENE},
+    {"shine.cfg", SPECULAR_SCENE("")},
+    /* Phong's lobe on the floor, microfacets on the walls and on leaves with holes */
+    {"gloss.cfg", SPECULAR_SCENE("{ name = \"wall\"; specular = [0.5, 0.4, 0.3]; roughness = 0.4; }, "
+                                 "{ name = \"leaves\"; specular = [0.1, 0.1, 0.1]; roughness = 0.0; }, ")},
     {"open.cfg", "meshes = ( { file = \"room.obj\"; } );\nambient = [0.5, 0.6, 0.7]; ambient_radius = 0.8;\n"
                  "background = [0.2, 0.3, 0.4]; sky: { light = true; };\n"
                  "materials = ( { name = \"lamp\"; area_light = true; } );\noutput: { width = 48; height = 33; frames = 4; };\n"
@@ -147,7 +150,7 @@ static const struct {
     {"basis-still", TEST_PACKS "/still.cfg", PLAIN BASIS},
     {"basis-16", TEST_PACKS "/room.cfg", PLAIN BASIS "--indirect-samples 16 --tile 8"},
     {"basis-33x47", TEST_SCENES "/cornell.cfg", PLAIN BASIS "--size 33x47 --frames 3 --sample-bits 16"},
-    {"basis-shine", TEST_PACKS "/shine.cfg", BASIS "--all-formats"},
+    {"basis-shine", TEST_PACKS "/gloss.cfg", BASIS "--all-formats"},
 #undef BASIS
 #define LIVE "--indirect radiosity --receiver-rays 64 --receiver-spacing 24 --patches 200 "
     {"live", TEST_PACKS "/room.cfg", PLAIN LIVE "--all-formats"},

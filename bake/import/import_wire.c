@@ -158,9 +158,10 @@ static bool good_material(model_material *m, int images) {
     m->name[sizeof m->name - 1] = '\0';
     return within(m->albedo, 3, 0.0f, VIT_MAX_ALBEDO) && within(m->emission, 3, 0.0f, VIT_MAX_RADIANCE) &&
            m->kind <= VIT_THIN_GLASS && within(m->specular, 3, 0.0f, 1.0f) && within(&m->exponent, 1, 1.0f, VIT_MAX_EXPONENT) &&
-           within(&m->ior, 1, VIT_MIN_IOR, VIT_MAX_IOR) && within(m->absorption, 3, 0.0f, VIT_MAX_RADIANCE) &&
-           is_bool(&m->area_light) && m->image >= -1 && m->image < images && m->wrap_u <= VIT_WRAP_MIRROR &&
-           m->wrap_v <= VIT_WRAP_MIRROR && within(&m->cutoff, 1, 0.0f, 1.0f) && within(&m->alpha, 1, 0.0f, 1.0f);
+           within(&m->lobe_alpha, 1, 0.0f, 1.0f) && within(&m->ior, 1, VIT_MIN_IOR, VIT_MAX_IOR) &&
+           within(m->absorption, 3, 0.0f, VIT_MAX_RADIANCE) && is_bool(&m->area_light) && m->image >= -1 && m->image < images &&
+           m->wrap_u <= VIT_WRAP_MIRROR && m->wrap_v <= VIT_WRAP_MIRROR && within(&m->cutoff, 1, 0.0f, 1.0f) &&
+           within(&m->alpha, 1, 0.0f, 1.0f);
 }
 
 static bool good_camera(model_camera *c) {

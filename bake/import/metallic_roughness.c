@@ -11,6 +11,10 @@ float specular_exponent(float roughness) {
     return m < 1.0 ? 0.0f : (float)fmin(m, (double)VIT_MAX_EXPONENT);
 }
 
+float specular_alpha(float roughness) {
+    return fmaxf(roughness * roughness, VIT_MIN_ALPHA);
+}
+
 void specular_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
                             float metallic, float roughness) {
     const bool emits = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
@@ -23,5 +27,18 @@ void specular_from_metallic(model_material *m, const float base[3], const float 
         const float at_normal = dielectric[i] + (mean[i] - dielectric[i]) * metallic;
         m->specular[i] = mirror ? mean[i] : exponent > 0.0f ? at_normal : 0.0f;
         m->albedo[i] = mirror || exponent == 0.0f ? base[i] : base[i] * (1.0f - metallic) * (1.0f - most);
+    }
+}
+
+void specular_facets_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
+                                   float metallic, float roughness) {
+    const float most = fmaxf(dielectric[0], fmaxf(dielectric[1], dielectric[2]));
+    specular_from_metallic(m, base, mean, dielectric, metallic, roughness);
+    if (m->kind != VIT_MATTE)
+        return;
+    m->lobe_alpha = specular_alpha(roughness);
+    for (int i = 0; i < 3; i++) {
+        m->specular[i] = dielectric[i] + (mean[i] - dielectric[i]) * metallic;
+        m->albedo[i] = base[i] * (1.0f - metallic) * (1.0f - most);
     }
 }

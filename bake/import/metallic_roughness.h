@@ -11,6 +11,9 @@
  * (tests/numeric/test_specular_mapping.c has the errors). */
 float specular_exponent(float roughness);
 
+/* Of glTF's own lobe (GGX): the square of the roughness, VIT_MIN_ALPHA at least. */
+float specular_alpha(float roughness);
+
 #define SPECULAR_DIELECTRIC 0.04f
 
 /* Sets kind, albedo, specular and exponent. base: of the material, multiplied by the texture where there is one; mean:
@@ -19,5 +22,20 @@ float specular_exponent(float roughness);
  * mirrors, unless they emit; wide lobes matt surfaces of the base colour. */
 void specular_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
                             float metallic, float roughness);
+
+/* The same with glTF's own lobe at all roughnesses. */
+void specular_facets_from_metallic(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
+                                   float metallic, float roughness);
+
+/* Which of the two by quality.lobe, and whether a metal of that roughness shows its surroundings' colour by a lobe. */
+typedef void specular_mapping(model_material *m, const float base[3], const float mean[3], const float dielectric[3],
+                              float metallic, float roughness);
+static inline specular_mapping *specular_mapping_of(bool ggx) {
+    return ggx ? specular_facets_from_metallic : specular_from_metallic;
+}
+
+static inline bool specular_has_lobe(bool ggx, float roughness) {
+    return ggx || specular_exponent(roughness) > 0.0f;
+}
 
 #endif

@@ -17,6 +17,7 @@ typedef struct model_material {
     uint32_t kind;           /* VIT_MATTE, ...; mirrors and glass have no albedo and do not emit */
     float specular[3];       /* as in vit_material; VIT_MATTE: albedo + specular <= 1 */
     float exponent;          /* 1..VIT_MAX_EXPONENT; 1 without a lobe */
+    float lobe_alpha;        /* of a GGX lobe, VIT_MIN_ALPHA..1; 0: Phong's, or none */
     float ior;               /* VIT_MIN_IOR..VIT_MAX_IOR; 1 unless glass */
     float absorption[3];     /* 1/m, finite, >= 0; 0 unless VIT_GLASS */
     bool area_light;         /* what it emits lights others */

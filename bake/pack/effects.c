@@ -87,7 +87,7 @@ uint64_t effects_of_material(const vit_material *m) {
     if (is_positive(m->emission))
         e |= VIT_BIT(EMISSION) | (m->lights ? VIT_BIT(AREA_LIGHTS) : 0);
     if (m->kind == VIT_MATTE)
-        return e | (is_positive(m->specular) ? VIT_BIT(SPECULAR) : 0);
+        return e | (is_positive(m->specular) ? VIT_BIT(SPECULAR) | (m->alpha > 0.0f ? VIT_BIT(GGX) : 0) : 0);
     return e | VIT_BIT(CAUSTICS) | (m->kind == VIT_MIRROR ? VIT_BIT(MIRROR) : VIT_BIT(GLASS));
 }
 

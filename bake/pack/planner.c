@@ -101,6 +101,7 @@ static void plan_materials(const model *m, const atlas *a, plan *p) {
         memcpy(to->absorption, from->absorption, sizeof to->absorption);
         to->kind = from->kind;
         to->exponent = from->exponent;
+        to->alpha = from->lobe_alpha;
         to->ior = from->ior;
         to->lights = from->area_light && is_positive(from->emission);
     }

@@ -149,7 +149,8 @@ static path_vertex place_of(const photon_surface *s, vec3 normal, vec3 d) {
                      .out = vec3_scale(d, -1.0f),
                      .albedo = s->albedo,
                      .specular = vec3_load(s->material->specular),
-                     .exponent = s->material->exponent};
+                     .exponent = s->material->exponent,
+                     .alpha = s->material->alpha};
     r.glossy = r.specular.x + r.specular.y + r.specular.z > 0.0f;
     return r;
 }

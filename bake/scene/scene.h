@@ -58,11 +58,12 @@ enum { LIGHT_UNITS_AUTO, LIGHT_UNITS_PHOTOMETRIC, LIGHT_UNITS_RADIOMETRIC };
 /* Overrides of the material called `name`; has_* say which. */
 typedef struct scene_material {
     char name[SCENE_NAME];
-    bool has_color, has_texture, has_emission, has_cutoff, has_kind, has_specular, has_exponent, has_ior, has_absorption,
-        has_area_light;
+    bool has_color, has_texture, has_emission, has_cutoff, has_kind, has_specular, has_exponent, has_roughness, has_ior,
+        has_absorption, has_area_light;
     double color[3], emission[3], cutoff;
     int kind;                                         /* VIT_MATTE, ... */
     double specular[3], exponent, ior, absorption[3]; /* as vit_material */
+    double roughness;                                 /* root of vit_material.alpha */
     bool area_light;                                  /* what it emits lights others */
     char texture[SCENE_PATH];                         /* resolved; "" removes the texture */
     int line;

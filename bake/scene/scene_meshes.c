@@ -103,6 +103,7 @@ enum {
     MATERIAL_KIND,
     MATERIAL_SPECULAR,
     MATERIAL_EXPONENT,
+    MATERIAL_ROUGHNESS,
     MATERIAL_IOR,
     MATERIAL_ABSORPTION,
     MATERIAL_AREA_LIGHT
@@ -116,6 +117,7 @@ static const config_field material_fields[] = {
     [MATERIAL_KIND] = {"kind", FIELD_WORD, offsetof(scene_material, kind), SCENE_MATERIAL_KINDS},
     [MATERIAL_SPECULAR] = {"specular", FIELD_VECTOR, offsetof(scene_material, specular), "[0, 1]"},
     [MATERIAL_EXPONENT] = {"exponent", FIELD_NUMBER, offsetof(scene_material, exponent), "[1, 1e4]"},
+    [MATERIAL_ROUGHNESS] = {"roughness", FIELD_NUMBER, offsetof(scene_material, roughness), "[0, 1]"},
     [MATERIAL_IOR] = {"ior", FIELD_NUMBER, offsetof(scene_material, ior), "[1, 10]"},
     [MATERIAL_ABSORPTION] = {"absorption", FIELD_VECTOR, offsetof(scene_material, absorption), RADIOMETRIC},
     [MATERIAL_AREA_LIGHT] = {"area_light", FIELD_SWITCH, offsetof(scene_material, area_light), NULL},
@@ -126,15 +128,15 @@ static bool check_material(const config_place *at, const config_setting_t *group
     static const struct {
         int setting;
         uint32_t kinds; /* a bit a kind that has it */
-    } rules[] = {{MATERIAL_COLOR, 1u << VIT_MATTE},
-                 {MATERIAL_EMISSION, 1u << VIT_MATTE},
-                 {MATERIAL_EXPONENT, 1u << VIT_MATTE},
-                 {MATERIAL_AREA_LIGHT, 1u << VIT_MATTE},
-                 {MATERIAL_IOR, 1u << VIT_GLASS | 1u << VIT_THIN_GLASS},
+    } rules[] = {{MATERIAL_COLOR, 1u << VIT_MATTE},      {MATERIAL_EMISSION, 1u << VIT_MATTE},
+                 {MATERIAL_EXPONENT, 1u << VIT_MATTE},   {MATERIAL_ROUGHNESS, 1u << VIT_MATTE},
+                 {MATERIAL_AREA_LIGHT, 1u << VIT_MATTE}, {MATERIAL_IOR, 1u << VIT_GLASS | 1u << VIT_THIN_GLASS},
                  {MATERIAL_ABSORPTION, 1u << VIT_GLASS}};
     for (size_t i = 0; (seen & FIELD_BIT(MATERIAL_KIND)) && i < sizeof rules / sizeof *rules; i++)
         if ((seen & FIELD_BIT(rules[i].setting)) && !(rules[i].kinds & 1u << m->kind))
             return fields_fail(at, group, "'%s' does nothing for this 'kind'", material_fields[rules[i].setting].name);
+    if ((seen & FIELD_BIT(MATERIAL_ROUGHNESS)) && (seen & FIELD_BIT(MATERIAL_EXPONENT)))
+        return fields_fail(at, group, "'exponent' is of a Phong lobe and 'roughness' of a GGX one: state either");
     return true;
 }
 
@@ -167,6 +169,7 @@ bool reader_materials(reader *r, const config_setting_t *root) {
         material->has_kind = seen & FIELD_BIT(MATERIAL_KIND);
         material->has_specular = seen & FIELD_BIT(MATERIAL_SPECULAR);
         material->has_exponent = seen & FIELD_BIT(MATERIAL_EXPONENT);
+        material->has_roughness = seen & FIELD_BIT(MATERIAL_ROUGHNESS);
         material->has_ior = seen & FIELD_BIT(MATERIAL_IOR);
         material->has_absorption = seen & FIELD_BIT(MATERIAL_ABSORPTION);
         material->has_area_light = seen & FIELD_BIT(MATERIAL_AREA_LIGHT);

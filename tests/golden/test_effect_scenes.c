@@ -55,6 +55,7 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(CUTOUT, LAMP, "texture = \"holes.tga\"; cutoff = 0.5;", "", "")                                                          \
     X(EMISSION, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = false;", "", "")                                               \
     X(SPECULAR, LAMP, "specular = [0.3, 0.3, 0.3]; exponent = 40.0;", "", "")                                                  \
+    X(GGX, LAMP, "specular = [0.3, 0.3, 0.3]; roughness = 0.3;", "", "")                                                       \
     X(MIRROR, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                  \
     X(GLASS, LAMP, "kind = \"glass\"; ior = 1.5; absorption = [0.1, 0.2, 0.3];", "", "")                                       \
     X(CAUSTICS, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                \
@@ -171,7 +172,7 @@ static played play_idle(const void *bytes, uint64_t effect) {
     vit_text why = {""};
     void *idle = NULL;
     size_t size;
-    s.effects |= effect;
+    s.effects |= effect | (effect == VIT_BIT(GGX) ? VIT_BIT(SPECULAR) : 0);
     if (effect & (VIT_BIT(MIRROR) | VIT_BIT(GLASS)))
         s.chain = 8;
     if (effect == VIT_BIT(ANTIALIAS)) {
@@ -309,8 +310,8 @@ static void each_is_called_for_by_its_scene_and_changes_it(void **state) {
 /* A thing that no ray of the path reaches calls for nothing: tables and work are those of the plain scene. */
 static void what_is_never_reached_is_not_called_for(void **state) {
     scene_lab *l = *state;
-    static const uint64_t of_surfaces =
-        VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
+    static const uint64_t of_surfaces = VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(SPECULAR) | VIT_BIT(GGX) |
+                                        VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
     size_t size;
     bake(l, LAMP, "", "", "", "", false);
     void *bytes = load(l, &size);

@@ -116,7 +116,7 @@ static const struct {
     {"zones-sparse-buckets", SIXTEEN_LANES},
     {"basis", ONE_LANE},
     {"basis-33x47", EIGHT_LANES},
-    {"basis-shine", SIXTEEN_LANES},
+    {"basis-shine", ALL_WAYS},
     {"shine", ONE_LANE | BY_DEFAULT},
     {"live-shine", EIGHT_LANES},
     {"live-33x47", ONE_LANE},
@@ -255,7 +255,7 @@ ALIKE(live_radiosity_hashes_the_same, "live")
 ALIKE(live_radiosity_of_one_reflection_hashes_the_same, "live-once")
 ALIKE(live_radiosity_by_bc1_hashes_the_same, "live-33x47")
 ALIKE(live_radiosity_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "live-shine")
-ALIKE(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same, "basis-shine")
+ALIKE(baked_irradiance_with_mirrors_glass_both_lobes_sky_area_light_and_copies_hashes_the_same, "basis-shine")
 ALIKE(frames_without_photons_hash_the_same, "dark")
 ALIKE(baked_and_traced_photons_textures_holes_and_emission_hash_the_same, "room")
 ALIKE(a_mesh_without_a_scene_file_hashes_the_same, "mesh")
@@ -366,7 +366,7 @@ int main(void) {
         cmocka_unit_test(baked_irradiance_of_still_light_hashes_the_same),
         cmocka_unit_test(baked_irradiance_in_small_tiles_hashes_the_same),
         cmocka_unit_test(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same),
-        cmocka_unit_test(baked_irradiance_with_mirrors_glass_sky_area_light_and_copies_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_with_mirrors_glass_both_lobes_sky_area_light_and_copies_hashes_the_same),
         cmocka_unit_test(live_radiosity_hashes_the_same),
         cmocka_unit_test(live_radiosity_of_one_reflection_hashes_the_same),
         cmocka_unit_test(live_radiosity_by_bc1_hashes_the_same),

@@ -181,6 +181,53 @@ static void a_lobe_reflects_by_its_formula(void **state) {
     lab_close(&l);
 }
 
+static double dot3(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* glTF 2.0, appendix B: D V F of a reflectance at normal incidence. */
+static double facets_of(const double n[3], const double v[3], const double l[3], double alpha, double specular) {
+    const double a2 = alpha * alpha, h[3] = {l[0] + v[0], l[1] + v[1], l[2] + v[2]}, length = sqrt(dot3(h, h));
+    const double nh = dot3(n, h) / length, nl = dot3(n, l), nv = dot3(n, v), q = nh * nh * (a2 - 1) + 1;
+    const double smith = nl * sqrt(nv * nv * (1 - a2) + a2) + nv * sqrt(nl * nl * (1 - a2) + a2);
+    return a2 / (LAB_PI * q * q) * 0.5 / smith * (specular + (1 - specular) * pow(1 - dot3(v, h) / length, 5));
+}
+
+/* Metal floors under a constant sky, which paths find by the lobe's directions: their integral. */
+static void facets_reflect_a_sky(void **state) {
+    (void)state;
+    enum { SIDE = 8, STEPS = 600 };
+    static const float eye[3] = {0.3f, 0.2f, 0.4f};
+    static const double alphas[] = {0.09, 0.25, 1};
+    const double specular = 0.5, n[3] = {0, 1, 0}, from[3] = {(double)0.3f, (double)0.2f, (double)0.4f};
+    for (size_t e = 0; e < sizeof alphas / sizeof *alphas; e++) {
+        double wanted[SIDE * SIDE];
+        reference_lab l;
+        room *r = room_empty(0);
+        add_floor(r);
+        lab_open(&l, r, SIDE, 0, 2);
+        see_floor(&l, eye);
+        material_of(&l, 0, VIT_MATTE, (float)specular, 1, 1);
+        l.room->materials[0].alpha = (float)alphas[e];
+        sky_of(&l, 2);
+        l.in.max_samples = 1024;
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            double p[3], v[3], sum = 0;
+            floor_point(SIDE, i, p);
+            (void)unit_to(p, from, v);
+            for (int a = 0; a < STEPS; a++)
+                for (int b = 0; b < STEPS; b++) {
+                    const double c = (a + 0.5) / STEPS, s = sqrt(1 - c * c), turn = 2 * LAB_PI * (b + 0.5) / STEPS;
+                    const double d[3] = {s * cos(turn), c, s * sin(turn)};
+                    sum += facets_of(n, v, d, alphas[e], specular) * c * 2 * LAB_PI / STEPS / STEPS;
+                }
+            wanted[i] = 2 * sum;
+        }
+        expect_pixels("metal floor under a constant sky", &l, 1, wanted);
+        lab_close(&l);
+    }
+}
+
 /* Small light by chance and by looking for it: a little bright square in a glossy floor, sharp and blunt. */
 static void a_lobe_reflects_a_square(void **state) {
     (void)state;
@@ -420,11 +467,17 @@ static void the_worst_of_all_is_a_row_of_the_catalogue(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_mirror_shows_what_is_before_it), cmocka_unit_test(glass_lets_through_what_fresnel_leaves),
-        cmocka_unit_test(a_pane_lets_a_lamp_through),       cmocka_unit_test(a_lobe_reflects_by_its_formula),
-        cmocka_unit_test(a_lobe_reflects_a_square),         cmocka_unit_test(limited_paths_are_the_others_cut_short),
-        cmocka_unit_test(a_mirror_sends_a_lamp_s_light_on), cmocka_unit_test(a_slab_lets_the_sun_through),
-        cmocka_unit_test(furnaces_stay_as_they_are),        cmocka_unit_test(the_worst_of_all_is_a_row_of_the_catalogue),
+        cmocka_unit_test(a_mirror_shows_what_is_before_it),
+        cmocka_unit_test(glass_lets_through_what_fresnel_leaves),
+        cmocka_unit_test(a_pane_lets_a_lamp_through),
+        cmocka_unit_test(a_lobe_reflects_by_its_formula),
+        cmocka_unit_test(a_lobe_reflects_a_square),
+        cmocka_unit_test(facets_reflect_a_sky),
+        cmocka_unit_test(limited_paths_are_the_others_cut_short),
+        cmocka_unit_test(a_mirror_sends_a_lamp_s_light_on),
+        cmocka_unit_test(a_slab_lets_the_sun_through),
+        cmocka_unit_test(furnaces_stay_as_they_are),
+        cmocka_unit_test(the_worst_of_all_is_a_row_of_the_catalogue),
     };
     return cmocka_run_group_tests_name("reference effects", tests, NULL, NULL);
 }

@@ -43,6 +43,48 @@ static void roughness_and_metalness_make_lobes(void **state) {
     model_free(&m);
 }
 
+/* glTF's own lobe: alpha is the square of the roughness, at every roughness. */
+static void a_setting_makes_lobes_gltfs_own(void **state) {
+#define OWN "quality: { lobe = \"ggx\"; };"
+    static const struct {
+        const char *pbr;
+        double alpha, specular[3], albedo[3];
+    } cases[] = {{"\"metallicFactor\":0,\"roughnessFactor\":0.5", 0.25, {0.04, 0.04, 0.04}, {0.48, 0.24, 0.96}},
+                 {"\"metallicFactor\":0.5,\"roughnessFactor\":0.5", 0.25, {0.27, 0.145, 0.52}, {0.24, 0.12, 0.48}},
+                 {"\"metallicFactor\":0,\"roughnessFactor\":1", 1, {0.04, 0.04, 0.04}, {0.48, 0.24, 0.96}},
+                 {"\"metallicFactor\":0,\"roughnessFactor\":0", 0.0078125, {0.04, 0.04, 0.04}, {0.48, 0.24, 0.96}},
+                 {"\"roughnessFactor\":0.8", 0.64, {0.5, 0.25, 1}, {0, 0, 0}},
+                 {"\"roughnessFactor\":0.2", 0.04, {0.5, 0.25, 1}, {0, 0, 0}}};
+    model m;
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256];
+        (void)snprintf(text, sizeof text, PBR("\"baseColorFactor\":[0.5,0.25,1,1],%s"), cases[i].pbr);
+        import_gltf(text, "", OWN, &m);
+        const model_material *k = m.materials;
+        assert_true(k->kind == VIT_MATTE && fabs((double)k->lobe_alpha - cases[i].alpha) < 1e-6);
+        assert_true(near3(k->specular, cases[i].specular[0], cases[i].specular[1], cases[i].specular[2]));
+        assert_true(near3(k->albedo, cases[i].albedo[0], cases[i].albedo[1], cases[i].albedo[2]));
+        model_free(&m);
+        import_gltf(text, "", "", &m);
+        assert_true(m.materials[0].lobe_alpha == 0.0f);
+        model_free(&m);
+    }
+    import_gltf(PBR("\"roughnessFactor\":0.1"), "", OWN, &m);
+    assert_true(m.materials[0].kind == VIT_MIRROR && m.materials[0].lobe_alpha == 0.0f);
+    model_free(&m);
+    import_gltf("\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.5,0.25,0.75,1],"
+                "\"specularFactor\":[0.25,0.5,0.125],\"glossinessFactor\":0.1}}",
+                ",\"extensionsUsed\":[\"KHR_materials_pbrSpecularGlossiness\"]", OWN, &m);
+    assert_true(fabs((double)m.materials[0].lobe_alpha - 0.81) < 1e-6 && near3(m.materials[0].specular, 0.25, 0.5, 0.125));
+    assert_true(near3(m.materials[0].albedo, 0.25, 0.125, 0.375));
+    model_free(&m);
+    /* The scene file may take it back. */
+    import_gltf(PBR("\"roughnessFactor\":0.5"), "", OWN "materials = ( { name = \"a\"; exponent = 9; } );", &m);
+    assert_true(m.materials[0].lobe_alpha == 0.0f && m.materials[0].exponent == 9.0f);
+    model_free(&m);
+}
+
 static void smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it(void **state) {
     static const char metal[] = PBR("\"baseColorFactor\":[0.5,0.25,1,1],\"roughnessFactor\":0.05");
     model m;
@@ -316,6 +358,7 @@ static void the_dragon_is_of_amber(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(roughness_and_metalness_make_lobes),
+        cmocka_unit_test(a_setting_makes_lobes_gltfs_own),
         cmocka_unit_test(smooth_metal_is_a_mirror_and_a_scene_file_may_unmake_it),
         cmocka_unit_test(lobes_take_the_mean_of_textures),
         cmocka_unit_test(transmission_is_glass),

@@ -193,6 +193,15 @@ static void a_scene_file_makes_any_material_of_any(void **state) {
     assert_true(m.materials[0].exponent == 20.0f && near3(m.materials[0].albedo, 0.5, 0.5, 0.5) &&
                 near3(m.materials[0].specular, 0.5, 0.5, 0.5));
     model_free(&m);
+    import_mtl(plain, 1, "materials = ( { name = \"a\"; roughness = 0.5; specular = (0.25, 0.25, 0.25); } );", &m);
+    assert_true(m.materials[0].lobe_alpha == 0.25f && near3(m.materials[0].specular, 0.25, 0.25, 0.25));
+    model_free(&m);
+    import_mtl(plain, 1, "materials = ( { name = \"a\"; roughness = 0; specular = (0.25, 0.25, 0.25); } );", &m);
+    assert_true(m.materials[0].lobe_alpha == VIT_MIN_ALPHA);
+    model_free(&m);
+    import_mtl(plain, 1, "materials = ( { name = \"a\"; roughness = 0.5; } );", &m);
+    assert_true(is_matt(&m.materials[0]) && m.materials[0].lobe_alpha == 0.0f); /* nor that it could be the roughness of */
+    model_free(&m);
     import_mtl(plain, 1, "materials = ( { name = \"a\"; exponent = 20; } );", &m);
     assert_true(is_matt(&m.materials[0])); /* no lobe that it could be the exponent of */
     model_free(&m);

@@ -96,7 +96,9 @@
     X(MATL, negative_absorption, "absorption", im->materials[0].absorption[2] = -1)                                            \
     X(MATL, lights_of_2, "lights must be 0 or 1", im->materials[0].lights = 2)                                                 \
     X(MATL, rays_for_what_does_not_shine, "near2", im->materials[1].near2 = 1)                                                 \
-    X(MATL, padding_in_use, "padding", im->materials[1].pad = 7)                                                               \
+    X(MATL, alpha_too_small, "alpha", im->materials[1].alpha = 0.007f)                                                         \
+    X(MATL, alpha_above_1, "alpha", im->materials[1].alpha = 1.5f)                                                             \
+    X(MATL, alpha_of_nan, "alpha", im->materials[1].alpha = NAN)                                                               \
     X(LITE, directional_without_its_effect, "without the effect DIRECTIONAL", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL)      \
     X(LITE, directional_with_a_range, "directional light with a range", im->lights[0].kind = VIT_LIGHT_DIRECTIONAL,            \
       EFFECTS(BIT(DIRECTIONAL), 0))                                                                                            \
@@ -134,6 +136,7 @@
       EFFECTS(BIT(SPARSE), vit_effects_upon(BIT(PHOTONS)) & ~BIT(SPARSE)))                                                     \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
+    X(META, facets_without_lobes, "GGX without SPECULAR", EFFECTS(BIT(GGX), BIT(SPECULAR)))                                    \
     X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \
     X(META, cells_without_their_effects, "27 cells contradict", EFFECTS(0, BIT(ZONES) | BIT(AREA)))                            \
     X(META, zones_without_cells, "0 cells contradict", im->scene->cells = 0, EFFECTS(0, BIT(AREA)))                            \

@@ -94,6 +94,8 @@ static void each_thing_calls_for_its_effect_alone(void **state) {
     assert_true(added("ambient_radius = 2;") == 0);
     assert_true(added(MAKES("specular = (0.1, 0, 0);")) == VIT_BIT(SPECULAR));
     assert_true(added(MAKES("specular = (0, 0, 0); exponent = 20;")) == 0);
+    assert_true(added(MAKES("specular = (0.1, 0, 0); roughness = 0.5;")) == (VIT_BIT(SPECULAR) | VIT_BIT(GGX)));
+    assert_true(added(MAKES("specular = (0, 0, 0); roughness = 0.5;")) == 0);
     assert_true(added(MAKES("kind = \"mirror\";")) == (VIT_BIT(MIRROR) | VIT_BIT(CAUSTICS)));
     assert_true(added(MAKES("kind = \"glass\";")) == (VIT_BIT(GLASS) | VIT_BIT(CAUSTICS)));
     assert_true(added(MAKES("kind = \"thin_glass\";") "quality: { caustics = false; };") == VIT_BIT(GLASS));

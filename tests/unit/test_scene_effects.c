@@ -64,9 +64,9 @@ static void every_setting_is_read(void **state) {
         "materials = ( { name = \"a\"; kind = \"mirror\"; specular = (0.9, 0.8, 0.7); },\n"
         "  { name = \"b\"; kind = \"glass\"; specular = (0.5, 0.5, 1); ior = 1.33; absorption = [0.5, 0.25, 0.0]; },\n"
         "  { name = \"c\"; kind = \"thin_glass\"; }, { name = \"d\"; kind = \"matt\"; exponent = 80; area_light = false; }, "
-        "{ name = \"e\"; } );\n"
+        "{ name = \"e\"; roughness = 0.5; } );\n"
         "quality: { antialias = 8; antialias_contrast = 0.25; antialias_filter = \"tent\"; light_samples = 64;\n"
-        "  sky_samples = 32; specular_depth = 5; caustics = false; };\n",
+        "  sky_samples = 32; specular_depth = 5; lobe = \"ggx\"; caustics = false; };\n",
         &s);
     assert_true(is(s.ambient, 0.02, 0.03, 0.04));
     assert_string_equal(s.sky.image, FOLDER "/sky.hdr");
@@ -80,11 +80,12 @@ static void every_setting_is_read(void **state) {
                 is(m[1].absorption, 0.5, 0.25, 0));
     assert_true(m[2].kind == VIT_THIN_GLASS && m[3].has_kind && m[3].kind == VIT_MATTE && m[3].has_exponent &&
                 m[3].exponent == 80.0);
-    assert_true(m[3].has_area_light && !m[3].area_light && !m[4].has_kind);
+    assert_true(m[3].has_area_light && !m[3].area_light && !m[4].has_kind && !m[3].has_roughness);
+    assert_true(m[4].has_roughness && m[4].roughness == 0.5);
     const scene_quality *q = &s.quality;
     assert_true(q->antialias == 8 && q->antialias_contrast == 0.25 && q->tent && q->light_samples == 64 &&
                 q->sky_samples == 32);
-    assert_true(q->specular_depth == 5 && !q->caustics);
+    assert_true(q->specular_depth == 5 && q->ggx && !q->caustics);
     scene_free(&s);
 }
 
@@ -171,6 +172,12 @@ REFUSES(a_reflectance_above_1_is_refused, "'specular' must have its numbers in [
         MATERIAL("specular = (0, 1.5, 0); "))
 REFUSES(an_exponent_below_1_is_refused, "'exponent' must be in [1, 1e4], got 0.5", MATERIAL("exponent = 0.5; "))
 REFUSES(an_exponent_above_10000_is_refused, "'exponent' must be in [1, 1e4]", MATERIAL("exponent = 10001; "))
+REFUSES(a_roughness_above_1_is_refused, "'roughness' must be in [0, 1], got 1.5", MATERIAL("roughness = 1.5; "))
+REFUSES(a_roughness_below_0_is_refused, "'roughness' must be in [0, 1], got -0.1", MATERIAL("roughness = -0.1; "))
+REFUSES(a_mirror_with_a_roughness_is_refused, "'roughness' does nothing for this 'kind'",
+        MATERIAL("kind = \"mirror\"; roughness = 0.1; "))
+REFUSES(two_lobes_are_refused, "'exponent' is of a Phong lobe and 'roughness' of a GGX one: state either",
+        MATERIAL("exponent = 10; roughness = 0.1; "))
 REFUSES(an_index_of_refraction_below_1_is_refused, "'ior' must be in [1, 10], got 0.9", MATERIAL("ior = 0.9; "))
 REFUSES(negative_absorption_is_refused, "'absorption' must have its numbers in",
         MATERIAL("kind = \"glass\"; absorption = (0, 0, -1); "))
@@ -312,6 +319,10 @@ int main(void) {
         T(negative_absorption_is_refused),
         T(a_mirror_with_a_colour_is_refused),
         T(a_mirror_with_an_exponent_is_refused),
+        T(a_roughness_above_1_is_refused),
+        T(a_roughness_below_0_is_refused),
+        T(a_mirror_with_a_roughness_is_refused),
+        T(two_lobes_are_refused),
         T(a_mirror_with_an_index_is_refused),
         T(glass_that_emits_is_refused),
         T(a_pane_that_absorbs_is_refused),

@@ -283,7 +283,7 @@ bool threemf_material(importer *im, material_use *use) {
             return false;
         for (int k = 0; k < 3; k++)
             own[k] = color[k] * mean[k];
-        specular_from_metallic(&use->m, color, own, dielectric, l->metallic, l->roughness);
+        specular_mapping_of(im->s->quality.ggx)(&use->m, color, own, dielectric, l->metallic, l->roughness);
     }
     return true;
 }

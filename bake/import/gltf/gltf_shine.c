@@ -48,13 +48,15 @@ static bool read_glossiness(gltf_file *g, material_use *use, const json_t *how) 
         return false;
     const float glossiness = import_clamp((float)gltf_number(how, "glossinessFactor", 1.0) * mean[3], 1.0f);
     const float exponent = specular_exponent(1.0f - glossiness);
+    const bool lobe = specular_has_lobe(g->im->s->quality.ggx, 1.0f - glossiness);
     for (int i = 0; i < 3; i++)
         specular[i] = import_clamp(specular[i] * mean[i], 1.0f);
     for (int i = 0; i < 3; i++) {
-        m->albedo[i] = exponent > 0.0f ? base[i] * (1.0f - largest(specular)) : base[i];
-        m->specular[i] = exponent > 0.0f ? specular[i] : 0.0f;
+        m->albedo[i] = lobe ? base[i] * (1.0f - largest(specular)) : base[i];
+        m->specular[i] = lobe ? specular[i] : 0.0f;
     }
     m->exponent = exponent > 0.0f ? exponent : 1.0f;
+    m->lobe_alpha = g->im->s->quality.ggx ? specular_alpha(1.0f - glossiness) : 0.0f;
     return true;
 }
 
@@ -106,7 +108,8 @@ bool gltf_shine(gltf_file *g, material_use *use, const json_t *material) {
     const float metallic = import_clamp((float)gltf_number(pbr, "metallicFactor", 1.0) * parts[2], 1.0f);
     if (!read_clear(g, use, material, metallic, &glass))
         return false;
-    if (use->image[0] && (glass || (metallic > 0.0f && specular_exponent(roughness) > 0.0f)) &&
+    const bool ggx = g->im->s->quality.ggx;
+    if (use->image[0] && (glass || (metallic > 0.0f && specular_has_lobe(ggx, roughness))) &&
         !import_texture_mean(g->im, use->image, NULL, true, mean))
         return false;
     for (int i = 0; i < 3; i++)
@@ -114,6 +117,6 @@ bool gltf_shine(gltf_file *g, material_use *use, const json_t *material) {
     if (glass)
         make_glass(use, material, mean);
     else
-        specular_from_metallic(&use->m, base, mean, dielectric, metallic, roughness);
+        specular_mapping_of(ggx)(&use->m, base, mean, dielectric, metallic, roughness);
     return true;
 }

@@ -77,13 +77,14 @@ static bool multiply_mean(importer *im, const mtl_map *map, const char *material
 /* The metallic-roughness model, of glTF's numbers. */
 static bool shade(importer *im, material_use *use, const mtl *m, float metallic, float roughness) {
     static const float dielectric[3] = {SPECULAR_DIELECTRIC, SPECULAR_DIELECTRIC, SPECULAR_DIELECTRIC};
+    const bool ggx = im->s->quality.ggx;
     float base[3], mean[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     memcpy(base, use->m.albedo, sizeof base);
-    if (metallic > 0.0f && specular_exponent(roughness) > 0.0f && !multiply_mean(im, &m->color_map, NULL, true, mean))
+    if (metallic > 0.0f && specular_has_lobe(ggx, roughness) && !multiply_mean(im, &m->color_map, NULL, true, mean))
         return false;
     for (int i = 0; i < 3; i++)
         mean[i] *= base[i];
-    specular_from_metallic(&use->m, base, mean, dielectric, metallic, roughness);
+    specular_mapping_of(ggx)(&use->m, base, mean, dielectric, metallic, roughness);
     return true;
 }
 

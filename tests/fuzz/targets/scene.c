@@ -35,6 +35,8 @@ static void check_materials(const scene *s) {
         const scene_material *m = &s->materials[i];
         if (m->has_kind)
             in_range(m->kind, VIT_MATTE, VIT_THIN_GLASS);
+        if (m->has_roughness)
+            in_range(m->roughness, 0, 1);
         if (m->has_exponent)
             in_range(m->exponent, 1, VIT_MAX_EXPONENT);
         if (m->has_ior)
