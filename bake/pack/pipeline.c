@@ -7,7 +7,8 @@
 #include <string.h>
 
 static vit_status (*const scene_stages[])(pipeline *p, vit_text *why) = {
-    stage_import, stage_tracks, stage_area_light_planes, stage_glass_inset, stage_shape, stage_atlas, stage_sky,
+    stage_import, stage_tracks, stage_area_light_planes, stage_glass_inset, stage_shape, stage_light_places,
+    stage_atlas,  stage_sky,
 };
 
 static const struct {

@@ -21,6 +21,7 @@ vit_status stage_tracks(pipeline *p, vit_text *why);
 vit_status stage_area_light_planes(pipeline *p, vit_text *why);
 vit_status stage_glass_inset(pipeline *p, vit_text *why);
 vit_status stage_shape(pipeline *p, vit_text *why);
+vit_status stage_light_places(pipeline *p, vit_text *why);
 vit_status stage_atlas(pipeline *p, vit_text *why);
 vit_status stage_sky(pipeline *p, vit_text *why);
 

@@ -4,8 +4,10 @@
 #include "geometry/recentre.h"
 #include "import/import_frame.h"
 #include "import/light_units.h"
+#include "light/lights_in_surfaces.h"
 #include "pack/stages.h"
 #include <math.h>
+#include <stdlib.h>
 
 #define COARSE 0x1p-16 /* of the scene's size: coarser floats in its files are worth a warning */
 
@@ -102,6 +104,29 @@ static vit_status make_shape(const pipeline *p, const model *m, bvh *b, geometry
 
 vit_status stage_shape(pipeline *p, vit_text *why) {
     return make_shape(p, &p->model, &p->bvh, &p->geometry, &p->dark_sides, why);
+}
+
+/* A warning for each light that lies in a surface. */
+vit_status stage_light_places(pipeline *p, vit_text *why) {
+    const uint32_t lights = p->tracks.light_count;
+    const float offset = p->geometry.ray_offset;
+    light_in_surface *found = calloc(lights + 1u, sizeof *found);
+    triangle_rays rays;
+    if (!found || !triangle_rays_open(p->geometry.triangles, p->model.triangles, p->bvh.box_pad, p->threads, &rays)) {
+        free(found);
+        return out_of_memory(why);
+    }
+    lights_in_surfaces(&p->tracks, (uint32_t)p->scene.frames, &rays, offset, found);
+    triangle_rays_close(&rays);
+    for (uint32_t i = 0; i < lights; i++)
+        if (found[i].frames > 0)
+            progress_line(
+                p->progress, true,
+                "warning: light %u lies in a surface in %u of %d frames, the first of them %u: which side it lights is "
+                "chance there; move it by more than %.2g m",
+                i + 1, found[i].frames, p->scene.frames, found[i].first, (double)offset);
+    free(found);
+    return VIT_OK;
 }
 
 vit_status stage_atlas(pipeline *p, vit_text *why) {
