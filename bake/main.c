@@ -41,15 +41,19 @@ static void warn_of_missed_effects(bake *b) {
                           e->reason[bit] + strlen(EFFECTS_FORCED_OFF));
 }
 
-/* Settings of light that is baked, stated though there is no such light: a warning each, with --strict an error. */
+/* Settings of light that is baked, stated though there is no such light, and not what is taken anyway: a warning each, with
+ * --strict an error. */
 static vit_status check_idle_settings(bake *b, vit_text *why) {
     static const char no_radius[] = "there is no ambient light of a radius",
-                      no_light[] = "no matt surface takes light of the sky or of area lights";
+                      no_light[] = "no matt surface takes light of the sky or of area lights",
+                      no_basis[] = "no basis makes indirect light";
     static const struct {
         int setting;
         uint64_t effects; /* one of which it needs */
         const char *lacks;
-    } all[] = {{SETTING_AT_cache, VIT_BIT(OCCLUSION), no_radius},
+    } all[] = {{SETTING_AT_basis_receivers, VIT_BIT(BASIS), no_basis},
+               {SETTING_AT_point_spacing, VIT_BIT(POINTS), "irradiance is not baked at points"},
+               {SETTING_AT_cache, VIT_BIT(OCCLUSION), no_radius},
                {SETTING_AT_cache_spacing, VIT_BIT(OCCLUSION), no_radius},
                {SETTING_AT_cache_error, VIT_BIT(OCCLUSION), no_radius},
                {SETTING_AT_lightmap, VIT_BIT(LIGHTMAP), no_light},
@@ -58,7 +62,8 @@ static vit_status check_idle_settings(bake *b, vit_text *why) {
     const scene *s = &b->pipeline.scene;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         const bool stated = s->quality_kept >> all[i].setting & 1,
-                   open = all[i].setting == SETTING_AT_lightmap && s->quality.lightmap != LIGHTMAP_BAKED;
+                   open = (all[i].setting == SETTING_AT_lightmap && s->quality.lightmap != LIGHTMAP_BAKED) ||
+                          (all[i].setting == SETTING_AT_basis_receivers && s->quality.basis_receivers == RECEIVERS_CELLS);
         const char *word = setting_rows[all[i].setting].field.name;
         if (!stated || open || b->packed.plan.scene.effects & all[i].effects)
             continue;
@@ -190,6 +195,16 @@ static void explain_indirect(const bake *b) {
     if (s->effects & VIT_BIT(BASIS))
         printf("  indirect light by the basis: %u receivers, %u lights that move, %u bounces%s\n", s->receivers,
                s->basis_lights, s->bounces, s->bounces < PLAN_ALL_BOUNCES ? "" : " and more");
+    const basis_points *at = &b->packed.baked.points;
+    if (s->effects & VIT_BIT(POINTS))
+        printf(
+            "    at points in space: %u points of %u cells, %u of them parted by walls, %.0f kB (%.0f %% full, a look-up reads "
+            "%u records at most, %u cells dropped), %u levels of boxes from %.3g m on; by %u places, off by %.2g of the mean "
+            "light\n",
+            at->count, at->cells, at->parted,
+            1e-3 * (double)(s->receiver_cells * sizeof(vit_cache_cell) + s->receivers * sizeof(vit_receiver)),
+            100.0 * at->table.filled / s->receiver_cells, at->table.longest, at->table.dropped, at->levels, (double)at->step,
+            at->places, at->off);
     if (s->effects & VIT_BIT(RADIOSITY))
         explain_radiosity(&b->packed);
 }

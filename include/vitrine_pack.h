@@ -38,7 +38,7 @@
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how
  * much of the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on
  * area lights, then sets of directions to the sky. SKYT: the sky's picture. MSID: as SIDE, for the
- * lightmap, whose cells are MCEL. XFER: a vit_transfer. */
+ * lightmap, whose cells are MCEL. RCEL: with the effect POINTS it has as many vit_cache_cell records. XFER: a vit_transfer. */
 #define VIT_SECTIONS(X)                                                                                                        \
     X(META, vit_scene, 1u)                                                                                                     \
     X(CAMS, vit_camera, s->frames)                                                                                             \
@@ -50,7 +50,7 @@
     X(TEXR, vit_texture, s->textures)                                                                                          \
     X(MIPS, vit_mip, s->mips)                                                                                                  \
     X(ATLS, vit_u32, s->texels)                                                                                                \
-    X(SIDE, vit_u32, s->cells || s->receiver_cells ? 2 * (uint64_t)s->triangles : 0)                                           \
+    X(SIDE, vit_u32, s->cells || (s->receiver_cells && !s->point_levels) ? 2 * (uint64_t)s->triangles : 0)                     \
     X(CELL, vit_cell, s->cells)                                                                                                \
     X(EMIT, vit_light_sample, VIT_PATTERNS *((uint64_t)s->area_samples + s->sky_samples))                                      \
     X(SKYT, vit_sky_texel, s->sky_size ? (s->sky_size + (uint64_t)2) * (s->sky_size + 2) : 0)                                  \

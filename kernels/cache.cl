@@ -1,6 +1,6 @@
-/* The passes cache_sample, cache_merge and ambient_light: ambient light that surfaces keep from each other. METHODS.md,
- * "World-space cache". The first two only where the cache is filled while playing: then words of `counts` are rays of a point
- * in all frames (low half) and how many of these were open, `frame_counts` two words a point, of the frame's own. */
+/* The passes cache_sample, cache_merge and ambient_light: ambient light that surfaces keep from each other; point_light.
+ * METHODS.md, "World-space cache". The first two only where the cache is filled while playing: then words of `counts` are rays
+ * of a point in all frames (low half) and how many of these were open, `frame_counts` two words a point, of the frame's own. */
 
 #if VIT_WITH(LIVE_CACHE)
 /* Record times VIT_CACHE_POINTS plus point that the lanes' samples count for; -1: none. */
@@ -8,8 +8,9 @@ static inline li cache_target(global const vit_scene *scene, global const uint *
                               lu random) {
     uint seeds[CACHE_NEAR * VIT_LANES], tags[CACHE_NEAR * VIT_LANES];
     int of_cell[3 * VIT_LANES], of_q[3 * VIT_LANES];
+    cache_table t = cache_of_occlusion(scene, cells, 0);
     lf next, u = l_unit_float(l_pcg(random + 1u));
-    li level = cache_level(scene, distance, &next);
+    li level = cache_level(&t, distance, &next);
     level -= L_LT(l_unit_float(l_pcg(random)), next);
     cache_place place = cache_place_of(p, L_F(vit_div(1.0f, scene->cache_step)) * L_AS_FLOAT((127 - level) << 23));
     cache_seeds((place.x - 1) >> 1, (place.y - 1) >> 1, (place.z - 1) >> 1, L_AS_UINT(level), seeds, tags);
@@ -28,7 +29,7 @@ static inline li cache_target(global const vit_scene *scene, global const uint *
     li of = L_GATHER(li, of_cell, chosen), cell = of * VIT_LANES + L_INDEX;
     lv3 at = cache_from_corner(&place, ((place.x - 1) >> 1) + (of & 1), ((place.y - 1) >> 1) + (of >> 1 & 1),
                                ((place.z - 1) >> 1) + (of >> 2));
-    li record = cache_find_part(scene, cells, lanes, L_GATHER(lu, seeds, cell), L_AS_UINT(side), L_GATHER(lu, tags, cell), at);
+    li record = cache_find_part(&t, lanes, L_GATHER(lu, seeds, cell), L_AS_UINT(side), L_GATHER(lu, tags, cell), at);
     return l_sel_i(lanes & L_GE(record, L_I(0)), record * (int)VIT_CACHE_POINTS + L_GATHER(li, of_q, chosen), L_I(-1));
 }
 
@@ -120,6 +121,28 @@ kernel void ambient_light(global const vit_scene *scene, ROUND_PARAMETERS, globa
     out = lv3_set(fma(all.x, open * scene->ambient[0], out.x), fma(all.y, open * scene->ambient[1], out.y),
                   fma(all.z, open * scene->ambient[2], out.z));
     lv3_store_planes(out, direct, n, first);
+    WORK_END
+}
+#endif
+
+#if VIT_WITH(POINTS)
+/* Indirect light of the basis where its receivers are points: the irradiance of view samples. */
+kernel void point_light(global const vit_scene *scene, ROUND_PARAMETERS, global const uint *hit_triangle,
+                        global const float *position, global const uint *normal, global const uint *albedo,
+                        global const uint *cells, global const float *receivers, global const float *relit,
+                        global float *indirect WORK_PARAMETERS) {
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n || round_skips(first, active))
+        return;
+    li hit = L_NE(L_AS_INT(L_LOAD(hit_triangle + first)), L_I((int)VIT_NONE));
+    if (!l_any(hit))
+        return;
+    WORK_BEGIN
+    li lit = hit & L_EQ(L_AS_INT(L_LOAD(albedo + first) & VIT_SAMPLE_DARK), L_I(0));
+    lv3 p = sample_position(scene, position, first), way = lv3_sub(p, lv3_load((cameras + frame)->eye));
+    lv3 e = cache_irradiance(scene, cells, VIT_EFFECT_RELIGHT ? relit : receivers, p, l_decode_normal(L_LOAD(normal + first)),
+                             l_sqrt(lv3_dot(way, way)), lit WORK_PASS);
+    lv3_store_planes(lv3_sel(lit, e, lv3_set(L_F(0), L_F(0), L_F(0))), indirect, n, first);
     WORK_END
 }
 #endif

@@ -2,7 +2,8 @@
  * pass gather_patches (radiosity.cl), brings their irradiance up to where the frame's lights are; the pass samples interpolates
  * between the three receivers of their cell. */
 #define VIT_EFFECT_RECEIVERS (VIT_EFFECT_BASIS || VIT_EFFECT_RADIOSITY)
-#define VIT_EFFECT_LIVE (VIT_EFFECT_RELIGHT || VIT_EFFECT_RADIOSITY) /* their irradiance is the frame's own */
+#define VIT_EFFECT_ON_CELLS (VIT_EFFECT_POINTS ? 0 : VIT_EFFECT_RECEIVERS) /* at points the pass point_light looks them up */
+#define VIT_EFFECT_LIVE (VIT_EFFECT_RELIGHT || VIT_EFFECT_RADIOSITY)       /* their irradiance is the frame's own */
 
 /* What of it a kernel reads: buffers that the pack's effects do not call for are NULL. */
 #define RECEIVER_PARAMETERS                                                                                                    \

@@ -120,7 +120,7 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-        if (VIT_EFFECT_RECEIVERS)
+        if (VIT_EFFECT_ON_CELLS)
             lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_LIVE ? relit : receivers,
                                              hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position,
                                              VIT_EFFECT_REACH ? reached + scene->materials + VIT_REACHED_MORE : reached),

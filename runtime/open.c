@@ -64,6 +64,8 @@ static vit_launch launch_of(const vit_open_info *info, const vit_scene *s) {
         l.effects |= ON_REACH;
     if ((s->effects & ON(INDIRECT)) && !(s->effects & ON(SPARSE)))
         l.effects |= ON_DENSE;
+    if ((s->effects & ON_RECEIVERS) && !(s->effects & ON(POINTS)))
+        l.effects |= ON_CELLS;
     if (s->effects & (ON(MIRROR) | ON(GLASS)))
         l.effects |= ON_CHAINS;
     if (!(s->effects & ON(LIGHTMAP)) || (s->effects & ON(SPECULAR))) { /* lobes reflect what a lightmap does not say */

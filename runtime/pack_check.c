@@ -205,7 +205,9 @@ vit_status vit_pack_check_ATLS(const vit_pack *p, vit_text *why) {
 
 vit_status vit_pack_check_SIDE(const vit_pack *p, vit_text *why) {
     const vit_scene *s = p->scene;
-    const vit_u32 cells = s->cells > 0 ? s->cells : s->receiver_cells; /* effects ZONES and AREA, or receivers */
+    const vit_u32 cells = s->cells > 0           ? s->cells          /* effects ZONES and AREA, */
+                          : s->point_levels == 0 ? s->receiver_cells /* or receivers on surfaces */
+                                                 : 0;
     return vit_pack_check_sides(p, VIT_SECTION_SIDE, cells, why);
 }
 

@@ -40,6 +40,8 @@ vit_pack_check vit_pack_check_CACH;
 /* Irradiance of any receiver by a light of the basis with an intensity of 1, at most; *still: by all other light, W/m2. Both 0
  * without receivers. */
 double vit_pack_basis_bound(const vit_pack *p, double *still);
+/* pack_check_cache.c: of RCEL where it has points. */
+vit_pack_check vit_pack_check_points;
 /* pack_check_brightness.c: all sections together, after their own checks: whether light stays finite up to the pixel. */
 vit_pack_check vit_pack_check_brightness;
 /* A traced photon's power over its disc, W/m2, at most; 0 of lights without paths. */

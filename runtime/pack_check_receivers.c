@@ -117,6 +117,8 @@ static vit_status check_cells(const char *code, const places *s, vit_text *why) 
 }
 
 vit_status vit_pack_check_RCEL(const vit_pack *p, vit_text *why) {
+    if (p->scene->effects & VIT_BIT(POINTS))
+        return vit_pack_check_points(p, why);
     const places s = of_indirect(p);
     return check_cells("RCEL", &s, why);
 }

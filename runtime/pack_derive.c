@@ -73,6 +73,7 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"cache_cells", s->cache_cells, 0, MAX_CACHE},
         {"cache_probes", s->cache_probes, 0, VIT_CACHE_PROBES},
         {"cache_levels", s->cache_levels, 0, VIT_CACHE_LEVELS},
+        {"point_levels", s->point_levels, 0, VIT_CACHE_LEVELS},
         {"bounces", s->bounces, 1, MAX_BOUNCES},
         {"area_samples", s->area_samples, 0, VIT_MAX_LIGHT_SAMPLES},
         {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},

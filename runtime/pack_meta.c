@@ -31,7 +31,7 @@ static vit_status check_derived(const vit_scene *s, vit_text *why) {
 static vit_status check_floats(const vit_scene *s, vit_text *why) {
     const float least = FLT_MIN; /* positive, and not subnormal: its inverse is finite */
     const bool small = s->effects & VIT_BIT(SMALL_SAMPLES), open = s->effects & VIT_BIT(OCCLUSION),
-               live = s->effects & VIT_BIT(LIVE_CACHE);
+               live = s->effects & VIT_BIT(LIVE_CACHE), points = s->effects & VIT_BIT(POINTS);
     const struct {
         const char *name;
         float value, least, most;
@@ -53,6 +53,8 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
         {"cache_step", s->cache_step, open ? least : 0.0f, open ? FLT_MAX : 0.0f},
         {"cache_detail", s->cache_detail, 0.0f, open ? FLT_MAX : 0.0f},
         {"cache_error", s->cache_error, live ? least : 0.0f, live ? 1.0f : 0.0f},
+        {"point_step", s->point_step, points ? least : 0.0f, points ? FLT_MAX : 0.0f},
+        {"point_detail", s->point_detail, 0.0f, points ? FLT_MAX : 0.0f},
         {"ambient red", s->ambient[0], 0.0f, VIT_MAX_RADIANCE},
         {"ambient green", s->ambient[1], 0.0f, VIT_MAX_RADIANCE},
         {"ambient blue", s->ambient[2], 0.0f, VIT_MAX_RADIANCE},
@@ -67,8 +69,7 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return s->pad == 0 && s->map_pad == 0 && s->cache_pad == 0 ? VIT_OK
-                                                               : vit_pack_refuse(why, "section META: padding is not 0");
+    return VIT_OK;
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -93,7 +94,8 @@ static vit_status check_needs(const vit_scene *s, vit_text *why) {
 static vit_status check_receivers(const vit_scene *s, vit_text *why) {
     const vit_u64 e = s->effects;
     const bool basis = e & VIT_BIT(BASIS), relight = e & VIT_BIT(RELIGHT), live = e & VIT_BIT(RADIOSITY),
-               transfer = e & VIT_BIT(TRANSFER), rank = e & VIT_BIT(LOW_RANK), some = basis || live;
+               transfer = e & VIT_BIT(TRANSFER), rank = e & VIT_BIT(LOW_RANK), some = basis || live,
+               points = e & VIT_BIT(POINTS);
     if ((e & VIT_BIT(PHOTONS)) && some)
         return vit_pack_refuse(why, "section META: effects PHOTONS and %s exclude each other", basis ? "BASIS" : "RADIOSITY");
     if (basis && live)
@@ -102,6 +104,9 @@ static vit_status check_receivers(const vit_scene *s, vit_text *why) {
         return vit_pack_refuse(why,
                                "section META: %u receivers, %u cells and %u splits contradict the effects BASIS and RADIOSITY",
                                s->receivers, s->receiver_cells, s->receiver_splits);
+    if ((s->point_levels > 0) != points || (points && (s->receiver_splits > 0 || s->receiver_cells & (s->receiver_cells - 1))))
+        return vit_pack_refuse(why, "section META: %u levels, %u cells and %u splits contradict the effect POINTS",
+                               s->point_levels, s->receiver_cells, s->receiver_splits);
     if ((s->basis_lights > 0) != relight || ((s->basis_words > 0 || s->basis_coefficients > 0) && !relight))
         return vit_pack_refuse(why, "section META: %u lights, %u words and %u coefficients contradict the effect RELIGHT",
                                s->basis_lights, s->basis_words, s->basis_coefficients);

@@ -46,6 +46,8 @@
       ARGS_SURFACE, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), \
       B(albedo), B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits), B(receivers),      \
       B(relit), B(indirect), B(map_sides), B(map_cells), B(map_splits), B(map_receivers), B(by_rays), B(reached), ARGS_WORK)   \
+    X(point_light, ON(POINTS), EACH, PER_SAMPLE, ONCE, W(indirect), B(scene), ARGS_ROUND, B(hit_triangle), B(position),        \
+      B(normal), B(albedo), B(receiver_cells), B(receivers), B(relit), B(indirect), ARGS_WORK)                                 \
     X(cache_sample, ON(LIVE_CACHE), FIRST, PER_SAMPLE, ONCE, W(cache_frame), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),           \
       B(position), B(normal), B(cache), B(cache_counts), B(cache_frame), ARGS_WORK)                                            \
     X(cache_merge, ON(LIVE_CACHE), FIRST, PER_CACHE_CELL, ONCE, W(cache_frame) | W(cache_counts), B(scene), B(cache_frame),    \

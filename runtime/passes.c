@@ -108,6 +108,8 @@ const char *vit_buffer_effect(uint32_t buffer, const vit_launch *l) {
         return l->effects & ON(MIRROR) ? "mirror" : "glass";
     if (by & ON_FILM)
         return l->effects & ON(ANTIALIAS) ? "antialias" : "glass";
+    if (by & ON_CELLS)
+        return l->effects & ON(BASIS) ? "basis" : "radiosity";
     if (by & ON_REACH)
         return "record_reach";
     if (by & (ON_SKY_RAYS | ON_AREA_RAYS))

@@ -16,6 +16,7 @@
 #define ON_REACH ((uint64_t)1 << 58)     /* vit_open_info.record_reach */
 #define ON_SKY_RAYS ((uint64_t)1 << 57)  /* rays find the sky's light: all of it, or with a lightmap what lobes reflect, */
 #define ON_AREA_RAYS ((uint64_t)1 << 56) /* and that of area lights */
+#define ON_CELLS ((uint64_t)1 << 55)     /* receivers lie on surfaces, and cells of triangles' sides look them up */
 #define ALWAYS ((uint64_t)0)
 #define ON_RECEIVERS (ON(BASIS) | ON(RADIOSITY)) /* baked places at which indirect light is known */
 
@@ -58,10 +59,10 @@ typedef struct vit_launch {
     X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                            \
     X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                        \
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \
-    X(sides, ON(ZONES) | ON(AREA) | ON_RECEIVERS, SIDE, s->triangles * (uint64_t)8)                                            \
+    X(sides, ON(ZONES) | ON(AREA) | ON_CELLS, SIDE, s->triangles * (uint64_t)8)                                                \
     X(cells, ON(ZONES) | ON(AREA), CELL, s->cells * sizeof(vit_cell))                                                          \
     X(receiver_cells, ON_RECEIVERS, RCEL, s->receiver_cells * sizeof(vit_receiver_cell))                                       \
-    X(receiver_splits, ON_RECEIVERS, RSPL, s->receiver_splits * sizeof(vit_receiver_split))                                    \
+    X(receiver_splits, ON_CELLS, RSPL, s->receiver_splits * sizeof(vit_receiver_split))                                        \
     X(receivers, ON_RECEIVERS, RECV, s->receivers * sizeof(vit_receiver))                                                      \
     X(basis_groups, ON(RELIGHT), BGRP, (uint64_t)s->receivers / VIT_BASIS_GROUP * s->basis_lights * sizeof(vit_basis_group))   \
     X(basis_words, ON(RELIGHT), BWRD, (uint64_t)s->basis_words * 4)                                                            \

@@ -26,6 +26,7 @@
           z->samples)                                                                                                          \
     X(sky_filter, (z->position + 4 + 4 + z->specular / 2 + z->skylight + 12 + 12) * z->samples)                                \
     X(ambient_light, (4 + z->position + 4 + 4 + z->specular / 2 + 12 + 12) * z->samples + 4 * w[VIT_WORK_evaluations])         \
+    X(point_light, (4 + z->position + 4 + 4 + 12) * z->samples + (4 + 4 + 12) * w[VIT_WORK_evaluations])                       \
     X(cache_sample, (4 + z->position + 4 + z->face) * z->samples + (12 + 8) * w[VIT_WORK_shadow_rays])                         \
     X(cache_merge, 8 * (2 * 8 + 2 * 4) * z->cached)                                                                            \
     X(clear_masks, 4 * z->masks)                                                                                               \
@@ -162,8 +163,8 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.skylight = z.specular ? 24 : 12;
     z.zones = l->effects & ON(ZONES) ? 4 : 0;
     z.baked = z.zones + (l->effects & ON(AREA) ? 4u : 0u);
-    z.indirect = l->effects & ON_RECEIVERS ? 12 : 0;
-    z.received = l->effects & ON_RECEIVERS ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
+    z.indirect = l->effects & ON_CELLS ? 12 : 0;
+    z.received = l->effects & ON_CELLS ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
     z.mapped = l->effects & ON(LIGHTMAP) ? 4 + sizeof(vit_receiver_cell) + 3 * 12 : 0;
     z.by_rays = l->effects & ON(LIGHTMAP_RAYS) ? 4 : 0;
     z.cell = z.baked ? 4 + sizeof(vit_cell) : 0;

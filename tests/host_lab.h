@@ -105,6 +105,9 @@ typedef struct host_lab {
      * place, 1). s: cache_* of it. counts: the buffer cache_counts, or NULL: baked. */
     void (*open)(const vit_scene *s, const vit_cache_cell *cells, const uint32_t *counts, const float *places, uint32_t n,
                  float *open);
+    /* cache_irradiance() there, of receivers of 4 floats each: 3 planes of n. */
+    void (*point)(const vit_scene *s, const vit_cache_cell *cells, const float *receivers, const float *places, uint32_t n,
+                  float *irradiance);
     /* The product with a coded transfer matrix, of kernels/transfer_product.clh, which has the layout of what is between. */
     void (*transfer)(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y);
 } host_lab;

@@ -218,6 +218,14 @@ static void open_parts(const vit_scene *s, const vit_cache_cell *cells, const ui
     }
 }
 
+static void points(const vit_scene *s, const vit_cache_cell *cells, const float *receivers, const float *in, uint32_t n,
+                   float *out) {
+    for (uint i = 0; i < n; i += VIT_LANES) {
+        const lv3 e = cache_irradiance(s, (const uint *)cells, receivers, IN3(0), IN3(3), IN(6), L_GE(IN(6), L_F(0)));
+        OUT3(e, 0);
+    }
+}
+
 static void transfer(const vit_transfer *code, const float *x, float *projected, float *mixed, float *sums, float *y) {
     const uint groups = code->rank / VIT_LANES, rows = code->stride / VIT_LANES;
     for (uint i = 0; i < groups * transfer_column_chunks(code); i++)
@@ -260,5 +268,5 @@ static void weights(const host_lab_mesh *m, const float *rays, const float *dist
 }
 
 extern const host_lab HOST_LAB;
-const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces,   slices,  wrap,
-                           call,     relit,   receive,        weights,  open_parts, transfer};
+const host_lab HOST_LAB = {HOST_ISA, nearest, nearest_of_all, occluded, surfaces,   slices, wrap,
+                           call,     relit,   receive,        weights,  open_parts, points, transfer};

@@ -8,8 +8,8 @@
 set -u
 tools=$(cd "${1:-build/release}" && pwd) out=${2:-build/matrix} failed=0 rows=0
 mkdir -p "$out" && out=$(cd "$out" && pwd)
-packs="list zones buckets atrium shine basis basis-still basis-shine progressive-shine live-float32 live-float16 live-log8 live-bc1 live-sparse live-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine progressive-shine live-bc1 live-sparse" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
-if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis tiny-progressive-shine tiny-live-sparse" strict_packs="zones basis live-sparse" widths=8 threads_tried=2 devices=pthread; fi
+packs="list zones buckets atrium shine basis basis-still basis-shine points points-shine progressive-shine live-float32 live-float16 live-log8 live-bc1 live-sparse live-shine" strict_packs="list zones buckets raw atrium shine basis basis-shine points-shine progressive-shine live-bc1 live-sparse" widths="1 8 16" threads_tried="1 2" devices="basic pthread"
+if [ "${VITRINE_MATRIX:-}" = smoke ]; then packs="tiny-zones tiny-basis tiny-points-shine tiny-progressive-shine tiny-live-sparse" strict_packs="zones basis live-sparse" widths=8 threads_tried=2 devices=pthread; fi
 row() { # name, then a command that plays $pack and exits 0 if every hash is the pack's
     label=$1 && shift
     rows=$((rows + 1))
@@ -27,6 +27,7 @@ whole() { # the packs that a smoke run leaves out
     bake cornell buckets "--size 97x61 --photons 4000 --estimate buckets --normal-keys 1 --sample-bits 16 --indirect-samples 1"
     bake atrium atrium "--size 160x90 --photons 4000 --texture-filter trilinear"
     bake cornell basis "--size 97x61 $basis --tile 8 --sample-bits 16"
+    bake rooms points "--size 128x96 $basis --basis-receivers points"
     bake rooms basis-still "--size 128x96 $basis --antialias 4"
     for codec in float32 float16 log8 bc1 sparse; do
         bake cornell live-$codec "--size 97x61 $live --codec $codec"
@@ -73,6 +74,10 @@ EOF
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/progressive-shine.vit" --quiet --no-check --device host $basis --cache progressive --lightmap baked || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-progressive-shine.vit" --quiet --no-check --device host $tiny $basis --cache progressive --lightmap baked || exit 1
 "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-basis-shine.vit" --quiet --no-check --device host $tiny $basis || exit 1
+# Receivers at points in space.
+[ "${VITRINE_MATRIX:-}" = smoke ] ||
+    "$tools/vitrine-bake" "$out/shine.cfg" -o "$out/points-shine.vit" --quiet --no-check --device host $basis --basis-receivers points || exit 1
+"$tools/vitrine-bake" "$out/shine.cfg" -o "$out/tiny-points-shine.vit" --quiet --no-check --device host $tiny $basis --basis-receivers points || exit 1
 
 play="$tools/vitrine-play --verify --quiet"
 pocl=$("$tools/vitrine-play" --list-devices | sed -n 's/^\([0-9]*\) Portable Computing Language .*/\1/p' | head -1)

@@ -72,7 +72,7 @@ typedef struct pack_fixture {
     vit_u32 gather_words[FIXTURE_GATHER];
     vit_u32 looked_up[FIXTURE_LOOKED];
     vit_u32 transfer[FIXTURE_TRANSFER];
-    vit_cache_cell cache[FIXTURE_CACHE];
+    vit_cache_cell cache[FIXTURE_CACHE], point_cells[FIXTURE_CACHE];
     vit_photon photons[FIXTURE_BAKED];
     vit_gold golds[FIXTURE_FRAMES];
 } pack_fixture;
@@ -332,6 +332,29 @@ static inline void fixture_make_basis(pack_fixture *f) {
     vit_pack_derive(&f->scene, NULL);
 }
 
+/* fixture_make_basis() with its receivers at points: five cells of eight records, as fixture_cache() has them. Record i has the
+ * first i + 1 points, from receiver 100 i on, but record 2 is parted. */
+static inline void fixture_make_points(pack_fixture *f) {
+    fixture_make_basis(f);
+    for (vit_u32 i = 0; i < FIXTURE_CACHE; i++) {
+        f->point_cells[i] = (vit_cache_cell){.key = f->cache[i].key};
+        if (f->cache[i].key == VIT_CACHE_EMPTY)
+            continue;
+        f->point_cells[i].word[0] = i < 5 ? 100 * i : FIXTURE_RECEIVERS - VIT_CACHE_POINTS;
+        for (vit_u32 q = 0; q < VIT_CACHE_POINTS; q++)
+            f->point_cells[i].word[1] |= (q <= i ? q : VIT_POINT_NONE) << VIT_POINT_BITS * q;
+        f->point_cells[i].word[2] = i << 20;
+    }
+    f->point_cells[2] = (vit_cache_cell){17, {0x20080201u, 0xbf800000u, 2u << 20 | VIT_CACHE_PARTED}};
+    f->scene.effects |= VIT_BIT(POINTS);
+    f->scene.receiver_cells = FIXTURE_CACHE;
+    f->scene.receiver_splits = 0;
+    f->scene.point_levels = 2;
+    f->scene.point_step = 0.0625f;
+    f->scene.point_detail = 2;
+    vit_pack_derive(&f->scene, NULL);
+}
+
 /* fixture_make() with a lightmap. Cells of the sides are 0 .. 25, one each: cell 2 is divided into 26 .. 29, rays find the
  * light of cells 5 and 28, and cells 0 and 29 are parted. */
 static inline void fixture_make_lightmap(pack_fixture *f) {
@@ -449,13 +472,14 @@ static inline void fixture_make_chain(pack_fixture *f, vit_u32 depth) {
 
 /* Where the fixture has what goes into the sections. */
 static inline pack_sections fixture_sections(const pack_fixture *f) {
+    const void *receiver_cells = f->scene.point_levels > 0 ? (const void *)f->point_cells : (const void *)f->receiver_cells;
     return (pack_sections){
         .data = {
             [VIT_SECTION_META] = &f->scene,        [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
             [VIT_SECTION_GEOM] = f->triangles,     [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
             [VIT_SECTION_MATL] = f->materials,     [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
             [VIT_SECTION_ATLS] = f->texels,        [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
-            [VIT_SECTION_EMIT] = f->emitters,      [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = f->receiver_cells,
+            [VIT_SECTION_EMIT] = f->emitters,      [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = receiver_cells,
             [VIT_SECTION_RSPL] = f->splits,        [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
             [VIT_SECTION_BWRD] = f->words,         [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
             [VIT_SECTION_PATC] = f->patches,       [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,

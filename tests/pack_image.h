@@ -49,7 +49,7 @@ typedef struct image {
     vit_gather_row *gather_rows;
     vit_u32 *gather_words, *looked_up;
     vit_u32 *transfer;
-    vit_cache_cell *cache;
+    vit_cache_cell *cache, *point_cells; /* the latter of FIXTURE_POINT_CELLS alone */
     vit_photon *photons;
     vit_gold *golds;
 } image;
@@ -95,19 +95,28 @@ static inline image image_of(const pack_fixture *f) {
     im.looked_up = section(&im, VIT_SECTION_LOOK);
     im.transfer = section(&im, VIT_SECTION_XFER);
     im.cache = section(&im, VIT_SECTION_CACH);
+    im.point_cells = section(&im, VIT_SECTION_RCEL);
     im.photons = section(&im, VIT_SECTION_PHOT);
     im.golds = section(&im, VIT_SECTION_GOLD);
     return im;
 }
 
 /* The fixtures: between them no section is empty. */
-typedef enum fixture_kind { FIXTURE_PHOTONS, FIXTURE_BASIS, FIXTURE_LIVE, FIXTURE_LIGHTMAP, FIXTURE_KINDS } fixture_kind;
+typedef enum fixture_kind {
+    FIXTURE_PHOTONS,
+    FIXTURE_BASIS,
+    FIXTURE_LIVE,
+    FIXTURE_LIGHTMAP,
+    FIXTURE_POINT_CELLS,
+    FIXTURE_KINDS
+} fixture_kind;
 
 static inline void fixture_make_kind(pack_fixture *f, fixture_kind kind) {
-    kind == FIXTURE_LIGHTMAP ? fixture_make_lightmap(f)
-    : kind == FIXTURE_LIVE   ? fixture_make_live(f)
-    : kind == FIXTURE_BASIS  ? fixture_make_basis(f)
-                             : fixture_make(f);
+    kind == FIXTURE_LIGHTMAP      ? fixture_make_lightmap(f)
+    : kind == FIXTURE_POINT_CELLS ? fixture_make_points(f)
+    : kind == FIXTURE_LIVE        ? fixture_make_live(f)
+    : kind == FIXTURE_BASIS       ? fixture_make_basis(f)
+                                  : fixture_make(f);
 }
 
 static inline image valid_image_of(fixture_kind kind) {

@@ -19,7 +19,7 @@ NUMERIC_PROGRAMS := $(filter $(B)/tests/numeric/%,$(TEST_PROGRAMS))
 $(NUMERIC_PROGRAMS) $(addprefix $(B)/tests/unit/test_,transfer_kernel receivers_kernel relight_kernel cache_kernel): $(HOST_LAB)
 # Plain methods of other systems, which nothing of the product uses.
 OCTREE := $(call obj,$(wildcard tests/baselines/octree*.c))
-$(B)/tests/bench/bench_cache: $(HOST_LAB)
+$(B)/tests/bench/bench_cache $(B)/tests/bench/bench_cache_moving: $(HOST_LAB)
 $(B)/tests/golden/test_octree $(B)/tests/bench/bench_octree: $(OCTREE)
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/tests/%.o $(BAKE_ARCHIVE) $(B)/libvitrine.a
 	$(CC) $(OPT) $(WRAPPED:%=-Wl,--wrap=%) $(filter %.o,$^) $(filter %.a,$^) -lcmocka $(LIBS_COST) $(LIBS_BAKE) $(LIBS_RUNTIME) -o $@

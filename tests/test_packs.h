@@ -151,6 +151,11 @@ static const struct {
     {"basis-16", TEST_PACKS "/room.cfg", PLAIN BASIS "--indirect-samples 16 --tile 8"},
     {"basis-33x47", TEST_SCENES "/cornell.cfg", PLAIN BASIS "--size 33x47 --frames 3 --sample-bits 16"},
     {"basis-shine", TEST_PACKS "/gloss.cfg", BASIS "--all-formats"},
+#define POINTS "--basis-receivers points --point-spacing 10 "
+    {"points", TEST_PACKS "/room.cfg", PLAIN BASIS POINTS "--all-formats"},
+    {"points-still", TEST_PACKS "/still.cfg", PLAIN BASIS POINTS},
+    {"points-shine", TEST_PACKS "/shine.cfg", BASIS POINTS},
+#undef POINTS
 #undef BASIS
 #define LIVE "--indirect radiosity --receiver-rays 64 --receiver-spacing 24 --patches 200 "
     {"live", TEST_PACKS "/room.cfg", PLAIN LIVE "--all-formats"},

@@ -4,6 +4,7 @@
 
 #define ITERATIONS 16
 #define RELAXATION 1.5
+#define CHANCE 1.0 /* variances of what is left by chance, that count for nothing */
 
 static bool is_held_out(uint32_t row) {
     return row % CACHE_HELD_OUT == CACHE_HELD_OUT - 1;
@@ -43,12 +44,28 @@ static double error_of(const cache_met *m, const float *value, const double *poi
     return count > 0 ? sqrt(square / count) : 0.0;
 }
 
-float *cache_fit(const cache_met *m, const float *value, double *error) {
+/* Variances of what spread() brings to points, of rows' chance. */
+static void spread_variance(const cache_met *m, const float *noise, double *variance) {
+    for (uint32_t row = 0; row < m->taken_count && noise; row++)
+        for (size_t i = m->first[row]; i < m->first[row + 1] && !is_held_out(row); i++) {
+            const double w = (double)m->reads[i].weight * (double)noise[row];
+            variance[m->reads[i].point] += w * w;
+        }
+}
+
+/* The part of what is left that is more than chance. */
+static double more_than_chance(double left, double variance) {
+    const double chance = CHANCE * variance;
+    return chance > 0.0 ? (left * left > chance ? left - chance / left : 0.0) : left;
+}
+
+float *cache_fit(const cache_met *m, const float *value, const float *noise, double *error) {
     const size_t points = (size_t)m->cell_count * VIT_CACHE_POINTS;
     double *weight = calloc(points + 1, sizeof *weight), *sum = calloc(points + 1, sizeof *sum),
-           *point = calloc(points + 1, sizeof *point);
+           *point = calloc(points + 1, sizeof *point), *variance = calloc(points + 1, sizeof *variance);
     float *out = malloc((points + 1) * sizeof *out);
-    if (weight && sum && point && out) {
+    if (weight && sum && point && variance && out) {
+        spread_variance(m, noise, variance);
         for (uint32_t row = 0; row < m->taken_count; row++)
             for (size_t i = m->first[row]; i < m->first[row + 1] && !is_held_out(row); i++)
                 weight[m->reads[i].point] += (double)m->reads[i].weight;
@@ -60,13 +77,14 @@ float *cache_fit(const cache_met *m, const float *value, double *error) {
                 sum[p] = 0.0;
             spread(m, value, point, false, sum);
             for (size_t p = 0; p < points; p++)
-                point[p] += weight[p] > 0.0 ? RELAXATION * sum[p] / weight[p] : 0.0;
+                point[p] += weight[p] > 0.0 ? RELAXATION * more_than_chance(sum[p], variance[p]) / weight[p] : 0.0;
         }
         *error = error_of(m, value, point);
         for (size_t p = 0; p < points; p++)
             out[p] = (float)point[p];
     }
-    const bool done = weight && sum && point;
+    const bool done = weight && sum && point && variance;
+    free(variance);
     free(weight);
     free(sum);
     free(point);

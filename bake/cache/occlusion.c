@@ -57,37 +57,13 @@ static void tell(void *user, double fraction) {
 
 /* Boxes of the nearest place are as wide on the picture as wanted. */
 static void choose_levels(const occlusion_input *in, const cache_sights *s, vit_scene *meta) {
-    const float edge = s->pixel * (float)in->spacing; /* wanted, a metre of distance */
-    float step = float_max(s->nearest * edge, in->seen.rays->s->ray_offset * LEAST_OFFSETS);
-    step = float_max(step, (float)in->radius / LEAST_OF_RADIUS);
-    meta->cache_levels = 1;
-    while (meta->cache_levels < VIT_CACHE_LEVELS && s->farthest * edge > step * (float)(1u << (meta->cache_levels - 1u)))
-        meta->cache_levels++;
-    meta->cache_step = step;
-    meta->cache_detail = edge / step;
+    const float least = in->seen.rays->s->ray_offset * LEAST_OFFSETS;
+    cache_levels_choose(s, in->spacing, float_max(least, (float)in->radius / LEAST_OF_RADIUS), meta);
 }
 
 static uint32_t code_of(float value) {
     const float code = floorf(value * VIT_CACHE_STEPS + 0.5f) + (float)VIT_CACHE_ZERO;
     return (uint32_t)float_min(float_max(code, 1.0f), (float)VIT_CACHE_MOST);
-}
-
-static vit_cache_cell empty_cell(const cache_cell *c) {
-    return (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
-}
-
-/* The planes of parted cells. */
-static uint32_t put_walls(const cache_walls *w, vit_cache_cell *cells) {
-    uint32_t count = 0;
-    for (uint32_t i = 0; w->count > 0 && i < w->met->cell_count; i++)
-        if (w->plane[i].normal != 0) {
-            vit_cache_cell *c = cells + count++;
-            *c = empty_cell(w->met->cells + i);
-            c->word[0] = w->plane[i].normal;
-            memcpy(c->word + 1, &w->plane[i].from, sizeof *c->word);
-            c->word[2] |= VIT_CACHE_PARTED;
-        }
-    return count;
 }
 
 /* The cells with what is known at their points, as a table. */
@@ -96,7 +72,7 @@ static vit_status put(const cache_met *m, const cache_walls *w, const float *val
     if (!cells)
         return bake_fail(why, VIT_FAILED, "out of memory");
     for (uint32_t i = 0; i < m->cell_count; i++) {
-        cells[i] = empty_cell(m->cells + i);
+        cells[i] = cache_cell_record(m->cells + i);
         for (uint32_t q = 0; q < VIT_CACHE_POINTS; q++) {
             const float v = value[i * VIT_CACHE_POINTS + q];
             if (isfinite(v)) {
@@ -105,7 +81,7 @@ static vit_status put(const cache_met *m, const cache_walls *w, const float *val
             }
         }
     }
-    out->parted = put_walls(w, cells + m->cell_count);
+    out->parted = cache_walls_put(w, cells + m->cell_count);
     out->cells = m->cell_count + out->parted;
     const vit_status status = cache_table_fit(cells, out->cells, &out->table, why);
     free(cells);
@@ -181,7 +157,7 @@ static vit_status find(const occlusion_input *in, const cache_sights *sights, ca
     cache_walls walls = {0};
     float *value = NULL;
     if (ask_places(&a, &meta, met, &walls, why))
-        value = in->live ? nothing_known(a.met) : cache_fit(a.met, a.open, &out->off);
+        value = in->live ? nothing_known(a.met) : cache_fit(a.met, a.open, NULL, &out->off);
     status = value ? put(a.met, &walls, value, out, why) : bake_fail(why, VIT_FAILED, "out of memory");
     cache_walls_free(&walls);
     free(a.open);

@@ -163,6 +163,16 @@ static bool take(cache_met *m, uint32_t sight, const reading *read, uint32_t cou
     return true;
 }
 
+void cache_levels_choose(const cache_sights *s, double spacing, float least, vit_scene *meta) {
+    const float edge = s->pixel * (float)spacing, /* wanted, a metre of distance */
+        step = float_max(s->nearest * edge, least);
+    meta->cache_levels = 1;
+    while (meta->cache_levels < VIT_CACHE_LEVELS && s->farthest * edge > step * (float)(1u << (meta->cache_levels - 1u)))
+        meta->cache_levels++;
+    meta->cache_step = step;
+    meta->cache_detail = edge / step;
+}
+
 vit_status cache_met_find(const vit_scene *meta, const cache_sights *sights, uint32_t enough, const cache_walls *walls,
                           cache_met *out, vit_text *why) {
     const reader r = {meta, walls};

@@ -31,6 +31,14 @@ typedef struct cache_met {
     size_t read_count, read_room;
 } cache_met;
 
+/* Levels of detail, and cache_step and cache_detail, so that boxes are `spacing` pixels wide on the picture, but those of level
+ * 0 no less than `least` metres. */
+void cache_levels_choose(const cache_sights *s, double spacing, float least, vit_scene *meta);
+/* A cell's record, of which nothing is known. */
+static inline vit_cache_cell cache_cell_record(const cache_cell *c) {
+    return (vit_cache_cell){cache_key(cache_seed(c->at, c->level), c->side), {0, 0, cache_tag(c->at)}};
+}
+
 /* Cells that walls part. */
 typedef struct cache_walls {
     const cache_met *met;

@@ -22,14 +22,15 @@ static cache_sight see(const looking *l, vec3 o, vec3 d, uint32_t chance) {
     vec3 power = {1.0f, 1.0f, 1.0f};
     cache_sight r = {.distance = 0.0f};
     for (uint32_t k = 0; k <= MOST_MIRRORS; k++) {
-        float t;
+        float t, b[3];
         const uint32_t triangle = photon_rays_nearest(rays, o, d, &t);
         if (triangle == VIT_NONE)
             break;
-        const photon_surface at = photon_surface_at(rays->s, o, d, t, triangle);
+        const photon_surface at = photon_surface_seen(rays->s, o, d, t, triangle, PHOTON_CONE, b);
         if (photon_is_matt(rays->s, at.material)) {
             const vec3 way = vec3_sub(at.position, eye);
-            return (cache_sight){at.position, at.normal, at.face, sqrtf(vec3_dot(way, way))};
+            return (cache_sight){at.position, at.normal, at.face, sqrtf(vec3_dot(way, way)), 2 * triangle + at.back,
+                                 b[1],        b[2]};
         }
         chance = pcg(chance);
         d = photons_specular_bounce(&at, d, t, unit_float(chance), &o, &power);

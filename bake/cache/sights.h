@@ -10,6 +10,8 @@ typedef struct cache_sight {
     vec3 normal;    /* unit, interpolated, on the seen side */
     vec3 face;      /* unit, of the triangle */
     float distance; /* from the frame's eye, straight, m */
+    uint32_t side;  /* of which triangle, */
+    float b1, b2;   /* and where on it: barycentric weights */
 } cache_sight;
 
 typedef struct cache_sights {

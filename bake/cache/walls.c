@@ -160,6 +160,19 @@ bool cache_walls_find(const cache_walls_input *in, cache_walls *out) {
     return holds;
 }
 
+uint32_t cache_walls_put(const cache_walls *w, vit_cache_cell *cells) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; w->count > 0 && i < w->met->cell_count; i++)
+        if (w->plane[i].normal != 0) {
+            vit_cache_cell *c = cells + count++;
+            *c = cache_cell_record(w->met->cells + i);
+            c->word[0] = w->plane[i].normal;
+            memcpy(c->word + 1, &w->plane[i].from, sizeof *c->word);
+            c->word[2] |= VIT_CACHE_PARTED;
+        }
+    return count;
+}
+
 void cache_walls_free(cache_walls *w) {
     free(w->plane);
     memset(w, 0, sizeof *w);

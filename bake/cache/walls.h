@@ -18,6 +18,8 @@ typedef struct cache_walls_input {
  * middle: of those met between pairs of places the one that leaves the least variance on its two sides. False: out of memory.
  */
 bool cache_walls_find(const cache_walls_input *in, cache_walls *out);
+/* Records of the planes: walls->count. Returns their number. */
+uint32_t cache_walls_put(const cache_walls *w, vit_cache_cell *cells);
 void cache_walls_free(cache_walls *w);
 
 #endif

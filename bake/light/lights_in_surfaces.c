@@ -12,7 +12,8 @@ static bool is_in_surface(const triangle_rays *rays, vec3 at, float reach) {
     return false;
 }
 
-void lights_in_surfaces(const tracks *t, uint32_t frames, const triangle_rays *rays, float ray_offset, light_in_surface *found) {
+void lights_in_surfaces(const tracks *t, uint32_t frames, const triangle_rays *rays, float ray_offset,
+                        light_in_surface *found) {
     for (uint32_t i = 0; i < t->light_count; i++) {
         found[i] = (light_in_surface){.frames = 0};
         for (uint32_t f = 0; f < frames; f++) {

@@ -10,7 +10,8 @@ typedef struct light_in_surface {
     uint32_t first;  /* of them */
 } light_in_surface;
 
-/* Point and spot lights that shine, nearer than `ray_offset` metres to a triangle of `rays`; `frames` of the path. found: a light each. */
+/* Point and spot lights that shine, nearer than `ray_offset` metres to a triangle of `rays`; `frames` of the path. found: a
+ * light each. */
 void lights_in_surfaces(const tracks *t, uint32_t frames, const triangle_rays *rays, float ray_offset, light_in_surface *found);
 
 #endif

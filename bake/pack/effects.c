@@ -54,6 +54,10 @@ void effects_drop(vit_scene *c, uint64_t effects) {
         c->cache_cells = c->cache_probes = c->cache_levels = 0;
         c->ambient_radius = c->cache_step = c->cache_detail = c->cache_error = 0;
     }
+    if (!(c->effects & VIT_BIT(POINTS))) {
+        c->point_levels = 0;
+        c->point_step = c->point_detail = 0;
+    }
     if (all & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT))) /* what is baked is the light of both together */
         c->effects &= ~vit_effects_upon(VIT_BIT(LIGHTMAP));
     if (!(c->effects & VIT_BIT(LIGHTMAP)))

@@ -155,14 +155,14 @@ static uint64_t effects_of_basis(const scene *s, const tracks *t, const plan *p)
     uint64_t e = effects_of_photons(s, p) ? VIT_BIT(BASIS) : 0;
     for (uint32_t i = 0; i < t->light_count && e; i++)
         e |= t->lights[i].path_count > 0 ? VIT_BIT(RELIGHT) : 0; /* of lights that move alone */
-    return e;
+    return e & VIT_BIT(BASIS) && s->quality.basis_receivers == RECEIVERS_POINTS ? e | VIT_BIT(POINTS) : e;
 }
 
 /* What is still needs no more than receivers. */
 static uint64_t effects_of_radiosity(const scene *s, const tracks *t, const plan *p) {
     const uint64_t e = effects_of_basis(s, t, p);
     if (!(e & VIT_BIT(RELIGHT)))
-        return e;
+        return e & ~VIT_BIT(POINTS);
     const uint64_t coded = s->quality.codec == VIT_TRANSFER_SPARSE_LOW_RANK ? VIT_BIT(LOW_RANK) : 0;
     return VIT_BIT(RADIOSITY) | (s->quality.bounces > 2 ? VIT_BIT(TRANSFER) | coded : 0);
 }

@@ -24,7 +24,8 @@ void stages_point(bake *b) {
                  [VIT_SECTION_MIPS] = p->atlas.mips,
                  [VIT_SECTION_ATLS] = p->atlas.texels,
                  [VIT_SECTION_SIDE] = out->baked.receivers.sides ? out->baked.receivers.sides : out->cells.sides,
-                 [VIT_SECTION_RCEL] = out->baked.receivers.cells,
+                 [VIT_SECTION_RCEL] = out->baked.points.table.records ? (const void *)out->baked.points.table.records
+                                                                      : out->baked.receivers.cells,
                  [VIT_SECTION_RSPL] = out->baked.receivers.splits,
                  [VIT_SECTION_RECV] = out->baked.still,
                  [VIT_SECTION_BGRP] = out->baked.basis.groups,

@@ -148,7 +148,10 @@ static vit_status find_live(bake *b, const photon_scene *s, const uint32_t *movi
 /* What META says of what is baked. */
 static void count_baked(const baked *b, vit_scene *c) {
     c->receivers = b->receivers.count;
-    c->receiver_cells = b->receivers.cell_count;
+    c->receiver_cells = b->points.count > 0 ? b->points.table.count : b->receivers.cell_count;
+    c->point_levels = b->points.levels;
+    c->point_step = b->points.step;
+    c->point_detail = b->points.detail;
     c->receiver_splits = b->receivers.split_count;
     c->basis_lights = b->lights;
     c->basis_words = b->basis.word_count;
@@ -173,6 +176,8 @@ vit_status stage_indirect(bake *b, vit_text *why) {
                       .still = still,
                       .moving = moving,
                       .live = is_live,
+                      .points = c->effects & VIT_BIT(POINTS),
+                      .point_spacing = b->scene.quality.point_spacing,
                       .size = (double)out->plan.sky_radius,
                       .reflections = out->plan.reflections,
                       .spacing = b->scene.quality.receiver_spacing,

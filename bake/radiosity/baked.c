@@ -249,11 +249,40 @@ static vit_status look_again(finding *f, baked *out, vit_text *why) {
     return status;
 }
 
-vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
-    *out = (baked){0};
-    states s = {0};
-    finding f = {.in = in, .states = &s};
-    vit_status status = make_states(in, &s, why);
+/* basis_points_input.light */
+static vit_status look_at_places(void *user, const receiver *places, uint32_t count, bool rough, const transport_light *out,
+                                 vit_text *why) {
+    finding *f = user;
+    f->looks = rough ? 1 : VIT_RECEIVER_LEVELS;
+    return find(f, places, count, rough ? FEWER : 1, out, why);
+}
+
+static vit_status find_points(finding *f, baked *out, vit_text *why) {
+    const baked_input *in = f->in;
+    const basis_points_input p = {.seen = {.rays = in->rays,
+                                           .tracks = in->tracks,
+                                           .frames = in->frames,
+                                           .width = in->width,
+                                           .height = in->height,
+                                           .threads = in->threads},
+                                  .spacing = in->point_spacing,
+                                  .most = MOST_RECORDS,
+                                  .columns = 3 * f->states->count,
+                                  .light = look_at_places,
+                                  .user = f};
+    float *irradiance;
+    vit_status status = basis_points_find(&p, &out->points, &irradiance, why);
+    out->receivers.count = out->points.count;
+    out->report = f->report;
+    if (status == VIT_OK)
+        status = keep(in, f->states, irradiance, out, why);
+    out->placed = 0;
+    free(irradiance);
+    return status;
+}
+
+static vit_status find_receivers(finding *f, baked *out, vit_text *why) {
+    const baked_input *in = f->in;
     const double closer = LEAST_SPACING / in->spacing;
     const receivers_input place = {.rays = in->rays,
                                    .geometry = in->geometry,
@@ -269,12 +298,19 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
                                    .records = MOST_RECORDS,
                                    .threads = in->threads,
                                    .look = look_first,
-                                   .user = &f,
-                                   .columns = 3 * s.count};
+                                   .user = f,
+                                   .columns = 3 * f->states->count};
+    const vit_status status = receivers_place(&place, &out->receivers, why);
+    return status == VIT_OK ? look_again(f, out, why) : status;
+}
+
+vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
+    *out = (baked){0};
+    states s = {0};
+    finding f = {.in = in, .states = &s};
+    vit_status status = make_states(in, &s, why);
     if (status == VIT_OK)
-        status = receivers_place(&place, &out->receivers, why);
-    if (status == VIT_OK)
-        status = look_again(&f, out, why);
+        status = in->points ? find_points(&f, out, why) : find_receivers(&f, out, why);
     drop_states(&s, in->moving_count);
     if (status != VIT_OK)
         baked_free(out);
@@ -283,6 +319,7 @@ vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
 
 void baked_free(baked *b) {
     receivers_free(&b->receivers);
+    basis_points_free(&b->points);
     basis_free(&b->basis);
     free(b->still);
     free(b->frames);

@@ -4,6 +4,7 @@
 #define VIT_RADIOSITY_BAKED_H
 
 #include "radiosity/basis.h"
+#include "radiosity/basis_points.h"
 #include "radiosity/receivers.h"
 #include "radiosity/transport.h"
 
@@ -16,10 +17,12 @@ typedef struct baked_input {
     uint32_t still_count;
     const uint32_t *moving; /* lights of the tracks that are not */
     uint32_t moving_count;
+    bool points; /* receivers are points in space, not on surfaces: quality.basis_receivers */
     bool live;   /* nothing is baked of lights that move: they tell where light changes, and so where receivers are, alone */
     double size; /* of the scene: radius of a sphere round it, m */
     uint32_t reflections;                      /* at most, or TRANSPORT_CONVERGED */
     double spacing, error;                     /* quality.receiver_spacing, quality.basis_error */
+    double point_spacing;                      /* quality.point_spacing */
     uint32_t receiver_rays;                    /* quality.receiver_rays */
     bool within;                               /* receivers_input.within */
     bool panes;                                /* light comes through thin glass */
@@ -29,6 +32,7 @@ typedef struct baked_input {
 } baked_input;
 
 typedef struct baked {
+    basis_points points; /* where they are, if receivers are points in space; then of `receivers` the count alone is there */
     receivers receivers; /* its count is a multiple of VIT_BASIS_GROUP: the last do not matter, */
     uint32_t placed;     /* and receivers.receivers has but these */
     vit_receiver *still; /* section RECV */

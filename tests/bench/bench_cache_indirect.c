@@ -56,7 +56,7 @@ static cache_sights places_of(const moment *m, uint32_t *pixel) {
         s.nearest = fminf(s.nearest, distance);
         s.farthest = fmaxf(s.farthest, distance);
         pixel[s.count] = i;
-        s.sight[s.count++] = (cache_sight){at, normal, normal, distance};
+        s.sight[s.count++] = (cache_sight){at, normal, normal, distance, 0, 0, 0};
     }
     const vec3 across = vec3_load(m->camera.right);
     s.pixel = sqrtf(vec3_dot(across, across));
@@ -88,7 +88,7 @@ static uint32_t best_of_points(const moment *right, double spacing, double *ligh
     for (size_t k = 0; k < 3; k++) {
         for (uint32_t row = 0; row < met.taken_count; row++)
             value[row] = (float)right->light[3 * pixel[met.taken[row]] + k];
-        float *point = cache_fit(&met, value, &held_out);
+        float *point = cache_fit(&met, value, NULL, &held_out);
         if (!point)
             bench_fail("out of memory");
         for (uint32_t row = 0; row < met.taken_count; row++) {

@@ -314,6 +314,8 @@ static void settings_of_light_that_a_scene_lacks_are_an_error_only_if_strict(voi
         {" --cache progressive", "'cache' does nothing: there is no ambient light of a radius"},
         {" --cache-spacing 4", "'cache_spacing' does nothing: there is no ambient light of a radius"},
         {" --cache-error 0.1", "'cache_error' does nothing: there is no ambient light of a radius"},
+        {" --basis-receivers points", "'basis_receivers' does nothing: no basis makes indirect light"},
+        {" --point-spacing 4", "'point_spacing' does nothing: irradiance is not baked at points"},
         {" --lightmap baked", "'lightmap' does nothing: no matt surface takes light of the sky or of area lights"},
         {" --lightmap-spacing 4", "'lightmap_spacing' does nothing: no matt surface takes"},
         {" --lightmap-error 0.1", "'lightmap_error' does nothing: no matt surface takes"},
@@ -332,7 +334,7 @@ static void settings_of_light_that_a_scene_lacks_are_an_error_only_if_strict(voi
         assert_true(warning && strstr(warning, idle[i][1]) && !strstr(warning + 1, "warning: "));
         assert_int_equal(empty(FOLDER), 1);
     }
-    tool(&r, TOOL_BAKE " --quiet " SMALL " --strict --lightmap auto" OUT);
+    tool(&r, TOOL_BAKE " --quiet " SMALL " --strict --lightmap auto --basis-receivers cells" OUT);
     tool_succeeds(&r);
     assert_null(strstr(r.err, "does nothing"));
     put_bytes(TEST_PACKS "/lit.cfg", text, sizeof text - 1);

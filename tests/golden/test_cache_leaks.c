@@ -1,5 +1,6 @@
 /* What gets through a wall of 2 cm between the open and a closed, dark room, of light that is baked or cached at places:
- * ambient light with a radius, baked and progressive, and the sky's and an area light's light as a lightmap.
+ * ambient light with a radius, baked and progressive, the sky's and an area light's light as a lightmap, and the light of a
+ * lamp by a basis whose receivers are points in space.
  *
  * Why this is hard: both stand on one floor, whose points on the two sides of the wall are nearer to one another than points
  * lie apart. The room is closed, so that all of its light is a leak, to be compared with none; what darkness leaks out is
@@ -52,7 +53,7 @@ static void render(scene_lab *l, bool room, const char *light, const char *optio
                   SIDE, SIDE, FRAMES, light, FOV, VIEW - 1, VIEW, 2 * VIEW - 1, 2 * VIEW);
     (void)fclose(f);
     scene_lab_bake(l, "wall.cfg", options);
-    scene_lab_play(l, "direct", out, sizeof pixels / sizeof *pixels);
+    scene_lab_play(l, strstr(options, "basis") ? "indirect" : "direct", out, sizeof pixels / sizeof *pixels);
 }
 
 /* The row of pixels where the wall's foot is seen: 0.7 m below the eye and 0.9 before it, looking to 0.1 above. */
@@ -108,11 +109,24 @@ static void of_a_lightmap(void **state) {
           (leak){0.01, 1e-4, 0.001});
 }
 
+/* Of the light outside, where the lamp shines on floor and wall. */
+static void of_a_basis_at_points(void **state) {
+    render(*state, true,
+           "lights = ( { type = \"point\"; keys = ( { position = [-0.7, 0.9, 0.0]; power = [20.0, 20.0, 20.0]; } ); } );",
+           "--photons 1000 --indirect basis --basis-receivers points --receiver-rays 128 --point-spacing 8", pixels);
+    const double outside = leak_of(OUT, NULL).mean;
+    leak in = leak_of(IN, NULL);
+    assert_true(outside > 0.05);
+    in = (leak){in.most / outside, in.mean / outside, in.clear / outside};
+    is_within("into the room", in, (leak){0.01, 1e-4, 0.001});
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(of_baked_ambient_light),
         cmocka_unit_test(of_progressive_ambient_light),
         cmocka_unit_test(of_a_lightmap),
+        cmocka_unit_test(of_a_basis_at_points),
     };
     return cmocka_run_group_tests_name("leaks of what is cached", tests, scene_lab_set_up, scene_lab_tear_down);
 }

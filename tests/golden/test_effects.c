@@ -233,6 +233,17 @@ static void baked_irradiance_takes_the_photons_place(void **state) {
     assert_int_equal(requirements("basis-16").effects & vit_effects_upon(VIT_BIT(SPARSE)), 0);
 }
 
+/* A table instead of sides, cells and splits, and a pass that looks it up. */
+static void receivers_at_points_have_a_table_and_a_pass(void **state) {
+    (void)state;
+    const vit_requirements points = requirements("points"), cells = requirements("basis");
+    adds("points", "basis", " ", " point_light ");
+    adds("basis", "points", " sides receiver_splits ", " ");
+    only_adds("points", "points-still", OF_RELIGHT, " relight ");
+    assert_int_equal(points.effects, cells.effects | VIT_BIT(POINTS));
+    assert_int_equal(bytes_of(&points, "receiver_cells") & (bytes_of(&points, "receiver_cells") - 1), 0);
+}
+
 static void still_lights_need_no_basis_and_no_relight(void **state) {
     (void)state;
     only_adds("basis", "basis-still", OF_RELIGHT, " relight ");
@@ -370,6 +381,7 @@ int main(void) {
         cmocka_unit_test(zones_and_areas_add_their_cells_and_a_word_a_sample_each),
         cmocka_unit_test(still_lights_have_no_pass_that_traces_photons),
         cmocka_unit_test(baked_irradiance_takes_the_photons_place),
+        cmocka_unit_test(receivers_at_points_have_a_table_and_a_pass),
         cmocka_unit_test(still_lights_need_no_basis_and_no_relight),
         cmocka_unit_test(live_radiosity_takes_the_place_of_the_basis),
         cmocka_unit_test(still_lights_are_baked_whatever_is_live),

@@ -117,6 +117,8 @@ static const struct {
     {"basis", ONE_LANE},
     {"basis-33x47", EIGHT_LANES},
     {"basis-shine", ALL_WAYS},
+    {"points", ALL_WAYS},
+    {"points-shine", BY_DEFAULT},
     {"shine", ONE_LANE | BY_DEFAULT},
     {"live-shine", EIGHT_LANES},
     {"live-33x47", ONE_LANE},
@@ -251,6 +253,8 @@ ALIKE(baked_irradiance_of_a_light_that_moves_hashes_the_same, "basis")
 ALIKE(baked_irradiance_of_still_light_hashes_the_same, "basis-still")
 ALIKE(baked_irradiance_in_small_tiles_hashes_the_same, "basis-16")
 ALIKE(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same, "basis-33x47")
+ALIKE(baked_irradiance_at_points_hashes_the_same, "points")
+ALIKE(baked_irradiance_at_points_with_mirrors_glass_and_copies_hashes_the_same, "points-shine")
 ALIKE(live_radiosity_hashes_the_same, "live")
 ALIKE(live_radiosity_of_one_reflection_hashes_the_same, "live-once")
 ALIKE(live_radiosity_by_bc1_hashes_the_same, "live-33x47")
@@ -289,7 +293,7 @@ static void every_buffer_is_the_same_after_every_pass(void **state) {
     (void)state;
     static const char *const packs[] = {"list",        "buckets",        "normal-keys", "room",          "small-sparse",
                                         "sparse-room", "sparse-buckets", "zones",       "zones-buckets", "mesh",
-                                        "shine",       "basis",          "live"};
+                                        "shine",       "basis",          "points",      "live"};
     for (size_t i = 0; i < COUNT(packs); i++)
         assert_pack_alike(packs[i], "--trace");
 }
@@ -367,6 +371,8 @@ int main(void) {
         cmocka_unit_test(baked_irradiance_in_small_tiles_hashes_the_same),
         cmocka_unit_test(baked_irradiance_on_parted_cells_and_small_samples_hashes_the_same),
         cmocka_unit_test(baked_irradiance_with_mirrors_glass_both_lobes_sky_area_light_and_copies_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_at_points_hashes_the_same),
+        cmocka_unit_test(baked_irradiance_at_points_with_mirrors_glass_and_copies_hashes_the_same),
         cmocka_unit_test(live_radiosity_hashes_the_same),
         cmocka_unit_test(live_radiosity_of_one_reflection_hashes_the_same),
         cmocka_unit_test(live_radiosity_by_bc1_hashes_the_same),

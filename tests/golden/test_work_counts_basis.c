@@ -49,11 +49,32 @@ static void bytes_of_a_basis_are_sizes_times_counts(void **state) {
     drop(c);
 }
 
+/* A point that counts has its cell's two words and three floats read; light of hits is written by a pass of its own. */
+static void bytes_of_a_basis_at_points_are_sizes_times_counts(void **state) {
+    (void)state;
+    static const char *const names[] = {"points", "points-shine"};
+    assert_same_counts_for_any_lanes(names, sizeof names / sizeof names[0]);
+    counted *c = count_frame("points", on_host);
+    const uint64_t points = WORK(&c->s, point_light, evaluations), hits = WORK(&c->s, samples, surface_points);
+    assert_in_range(points, hits, hits * 27 * 3 * 2); /* some of 27 points, of three sides and two levels */
+    assert_int_equal(WORK(&c->s, point_light, bytes),
+                     pack_buffer_bytes(&c->p, "hit_triangle") + pack_buffer_bytes(&c->p, "position") +
+                         pack_buffer_bytes(&c->p, "normal") + pack_buffer_bytes(&c->p, "albedo") +
+                         pack_buffer_bytes(&c->p, "indirect") + points * (4 + 4 + 12));
+    assert_int_equal(WORK(&c->s, samples, bytes),
+                     pack_buffer_bytes(&c->p, "hit_triangle") + pack_buffer_bytes(&c->p, "hit_distance") +
+                         pack_buffer_bytes(&c->p, "position") + pack_buffer_bytes(&c->p, "normal") +
+                         pack_buffer_bytes(&c->p, "albedo") + pack_buffer_bytes(&c->p, "direct") + hits * (48 + 48 + 80) +
+                         WORK(&c->s, samples, texture_fetches) * 16);
+    drop(c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counts_of_baked_irradiance_are_the_same_for_any_lanes),
         cmocka_unit_test(evaluations_of_a_basis_are_the_numbers_of_its_vectors),
         cmocka_unit_test(bytes_of_a_basis_are_sizes_times_counts),
+        cmocka_unit_test(bytes_of_a_basis_at_points_are_sizes_times_counts),
     };
     return cmocka_run_group_tests_name("work counts of baked irradiance", tests, NULL, NULL);
 }

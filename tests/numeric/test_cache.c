@@ -87,7 +87,7 @@ static void put_places(kind of, double from) {
         }
         const vec3 normal = i % 4 ? vec3_unit(vec3_load(n)) : (vec3){0, i % 8 ? 1.0f : -1.0f, 0};
         const float far = of == ON_POINTS ? 0.0f : (float)((2 << it.scene.cache_levels) * random_unit() * random_unit());
-        it.sight[i] = (cache_sight){vec3_load(at), normal, normal, far};
+        it.sight[i] = (cache_sight){vec3_load(at), normal, normal, far, 0, 0, 0};
         const float plane[7] = {at[0], at[1], at[2], normal.x, normal.y, normal.z, far};
         for (uint32_t k = 0; k < 7; k++)
             it.places[k * PLACES + i] = plane[k];

@@ -12,6 +12,7 @@
 #include "cache/points.h"
 #include "cache/points_met.h"
 #include "cache/table.h"
+#include "cache/walls.h"
 #include "host_lab.h"
 
 #include <math.h>
@@ -49,7 +50,7 @@ static cache_sight place(uint32_t i, float step, float farthest) {
             n[k] = k == (int)(i / 8 % 3) ? i % 16 > 8 ? -1.0f : 1.0f : 0.0f;
     }
     const vec3 normal = vec3_unit(vec3_load(n));
-    return (cache_sight){vec3_load(p), normal, normal, farthest * random_unit()};
+    return (cache_sight){vec3_load(p), normal, normal, farthest * random_unit(), 0, 0, 0};
 }
 
 /* Every third cell gets a plane through its middle part, in any direction or along an axis. */
@@ -142,18 +143,24 @@ static uint32_t code_of_half(uint32_t point) {
     return VIT_CACHE_ZERO + (uint32_t)VIT_CACHE_STEPS / 2;
 }
 
-/* What the rows say, in double; NAN: nothing. */
-static double expected(const lab *l, uint32_t row, uint32_t hole) {
+/* What the rows say, in double, as codes; NAN: nothing. */
+static double expected_code(const lab *l, uint32_t row, uint32_t hole) {
     double sum = 0.0, weight = 0.0;
     for (size_t i = l->met.first[row]; i < l->met.first[row + 1]; i++) {
         const uint32_t point = l->met.reads[i].point;
         if (hole && point % hole == 0)
             continue;
         const double w = (double)l->met.reads[i].weight;
-        sum += w * ((double)any_code(point) - VIT_CACHE_ZERO) / (double)VIT_CACHE_STEPS;
+        sum += w * (double)any_code(point);
         weight += w;
     }
-    return weight > 0.0 ? fmin(fmax(sum / weight, 0.0), 1.0) : NAN;
+    return weight > 0.0 ? sum / weight : NAN;
+}
+
+/* The same as the part that is open. */
+static double expected(const lab *l, uint32_t row, uint32_t hole) {
+    const double open = (expected_code(l, row, hole) - VIT_CACHE_ZERO) / (double)VIT_CACHE_STEPS;
+    return isfinite(open) ? fmin(fmax(open, 0.0), 1.0) : NAN;
 }
 
 static void the_kernel_reads_what_the_baker_wrote(void **state) {
@@ -248,6 +255,63 @@ static void a_point_counts_by_its_rays_where_they_are_found_while_playing(void *
     close_lab(l);
 }
 
+/* The cells with receivers for points, of which every third is none: the n-th has the number n * 3 + 1 as it is red, green
+ * twice as much. Cells are numbered as they come, so that `first` is of no order in the table. */
+static uint32_t put_receivers(lab *l, float *receivers) {
+    vit_text why;
+    uint32_t count = 0;
+    vit_cache_cell *cells = calloc(l->met.cell_count + l->walls.count + 1, sizeof *cells);
+    assert_non_null(cells);
+    for (uint32_t i = 0; i < l->met.cell_count; i++) {
+        cells[i] = cache_cell_record(&l->met.cells[i]);
+        cells[i].word[0] = count;
+        for (uint32_t q = 0, n = 0; q < VIT_CACHE_POINTS; q++) {
+            const uint32_t point = i * VIT_CACHE_POINTS + q;
+            const bool known = point % 3 != 0;
+            cells[i].word[1] |= (known ? n++ : VIT_POINT_NONE) << VIT_POINT_BITS * q;
+            if (known) {
+                const float value = (float)any_code(point);
+                memcpy(receivers + 4 * (size_t)count++, (float[4]){value, 2 * value, 1, -1}, 4 * sizeof *receivers);
+            }
+        }
+    }
+    const uint32_t all = l->met.cell_count + cache_walls_put(&l->walls, cells + l->met.cell_count);
+    assert_int_equal(cache_table_fit(cells, all, &l->table, &why), VIT_OK);
+    assert_int_equal(l->table.filled, all);
+    free(cells);
+    l->scene.receiver_cells = l->table.count;
+    l->scene.point_levels = l->scene.cache_levels;
+    l->scene.point_step = l->scene.cache_step;
+    l->scene.point_detail = l->scene.cache_detail;
+    l->scene.cache_levels = l->scene.cache_cells = 0;
+    return count;
+}
+
+static void receivers_at_points_are_read_as_the_baker_says(void **state) {
+    (void)state;
+    static float out[3 * PLACES];
+    for (uint32_t run = 0; run < 2; run++) {
+        lab *l = open_lab(0.37f, 4, 12.0f);
+        if (run == 1)
+            part_cells(l);
+        float *receivers = malloc(((size_t)l->met.cell_count * VIT_CACHE_POINTS + 1) * 4 * sizeof *receivers);
+        assert_non_null(receivers);
+        (void)put_receivers(l, receivers);
+        host_lab_find()->point(&l->scene, l->table.records, receivers, l->places, PLACES, out);
+        uint32_t known = 0;
+        for (uint32_t i = 0; i < PLACES; i++) {
+            const double code = expected_code(l, i, 3);
+            known += isfinite(code);
+            if (isfinite(code) && !(fabs(code - (double)out[i]) < 0.2 && fabs(2 * code - (double)out[PLACES + i]) < 0.4 &&
+                                    fabsf(out[2 * PLACES + i] - 1) < 1e-5f))
+                fail_msg("place %u: %g, expected %g", i, (double)out[i], code);
+        }
+        assert_in_range(known, PLACES - PLACES / 100, PLACES);
+        free(receivers);
+        close_lab(l);
+    }
+}
+
 /* A place that goes away from the eye: cells of all levels about it know something. */
 static void levels_change_without_a_jump(void **state) {
     (void)state;
@@ -260,7 +324,7 @@ static void levels_change_without_a_jump(void **state) {
     l->sights.count = PLACES;
     const float p[3] = {-0.31f, 0.77f, -1.9f}, n[3] = {0.36f, -0.48f, 0.8f};
     for (uint32_t i = 0; i < PLACES; i++) {
-        l->sights.sight[i] = (cache_sight){vec3_load(p), vec3_load(n), vec3_load(n), 20.0f * (float)i / PLACES};
+        l->sights.sight[i] = (cache_sight){vec3_load(p), vec3_load(n), vec3_load(n), 20.0f * (float)i / PLACES, 0, 0, 0};
         for (uint32_t k = 0; k < 3; k++) {
             l->places[k * PLACES + i] = p[k];
             l->places[(3 + k) * PLACES + i] = n[k];
@@ -297,6 +361,7 @@ int main(void) {
         cmocka_unit_test(the_kernel_reads_what_the_baker_wrote),
         cmocka_unit_test(what_all_points_agree_upon_is_so_everywhere),
         cmocka_unit_test(where_nothing_is_known_it_is_open),
+        cmocka_unit_test(receivers_at_points_are_read_as_the_baker_says),
         cmocka_unit_test(levels_change_without_a_jump),
         cmocka_unit_test(a_place_on_a_point_is_finite),
         cmocka_unit_test(a_point_counts_by_its_rays_where_they_are_found_while_playing),

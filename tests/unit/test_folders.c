@@ -4,8 +4,8 @@
 #include <dirent.h>
 #include <stdbool.h>
 
-static const char *const order[] = {"common",    "scene", "import", "geometry",  "motion", "light",  "dark_sides", "zones",
-                                    "radiosity", "cache", "pack",   "reference", "check",  "report", "cost",       NULL};
+static const char *const order[] = {"common", "scene",     "import", "geometry",  "motion", "light",  "dark_sides", "zones",
+                                    "cache",  "radiosity", "pack",   "reference", "check",  "report", "cost",       NULL};
 enum { MOST_FILES = 600, MOST_INCLUDES = 64, PATH = 512 };
 
 typedef struct file {

@@ -38,9 +38,9 @@ static void still_lights_are_found_in_all_frames(void **state) {
     (void)state;
     static path p;
     for (int f = 0; f < FRAMES; f++) {
-        put(&p, 0, f, 0.5f, 2.0f, 0.5f);               /* in the ceiling */
-        put(&p, 1, f, 0.5f, 2.0f - 4 * OFFSET, 0.5f);  /* below it */
-        put(&p, 2, f, 3.5f, 2.0f, 3.5f);               /* in its plane, beside it */
+        put(&p, 0, f, 0.5f, 2.0f, 0.5f);              /* in the ceiling */
+        put(&p, 1, f, 0.5f, 2.0f - 4 * OFFSET, 0.5f); /* below it */
+        put(&p, 2, f, 3.5f, 2.0f, 3.5f);              /* in its plane, beside it */
         put(&p, 3, f, 0.5f + 1.3f * OFFSET, 0.5f, 0); /* 0.92 offsets off the slanted wall */
         put(&p, 4, f, 0, 0, -5);                      /* in the last wall */
     }

@@ -161,6 +161,7 @@ static void every_count_has_limits_and_names_itself_beyond_them(void **state) {
                   LIMIT(cache_cells, 0, 1 << 26),
                   LIMIT(cache_probes, 0, 64),
                   LIMIT(cache_levels, 0, 16),
+                  LIMIT(point_levels, 0, 16),
                   LIMIT(transfer_words, 0, 1 << 30),
                   LIMIT(transfer_sums, 0, 513)};
 #undef LIMIT

@@ -78,7 +78,7 @@
     X(META, caustics_without_photons, "without", EFFECTS(0, BIT(PHOTONS) | BIT(TRACED)))                                       \
     X(META, directional_without_lights, "DIRECTIONAL without LIGHTS",                                                          \
       EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))                                           \
-    X(META, reserved_words_in_use, "padding", im->scene->pad = 1)                                                              \
+    X(META, levels_of_points, "1 levels, 0 cells and 0 splits contradict", im->scene->point_levels = 1)                        \
     X(EMIT, position_is_nan, "point 3: position", im->emitters[3].position[1] = NAN)                                           \
     X(EMIT, normal_too_short, "point 0: position is not finite, or normal", im->emitters[0].normal[1] = -0.5f)                 \
     X(EMIT, direction_too_long, "point 16", im->emitters[16].position[1] = 2)                                                  \

@@ -31,7 +31,7 @@
     X(META, no_error_of_a_live_one, "cache_error must be in", EFFECTS(BIT(LIVE_CACHE), 0))                                     \
     X(META, live_cache_without_one, "LIVE_CACHE without OCCLUSION", EFFECTS(BIT(LIVE_CACHE), BIT(OCCLUSION)),                  \
       im->scene->ambient_radius = im->scene->cache_step = im->scene->cache_detail = 0, im->scene->cache_error = 0.5f)          \
-    X(META, padding_of_the_cache, "padding is not 0", im->scene->cache_pad = 1)                                                \
+    X(META, step_of_points, "point_step must be in 0..0", im->scene->point_step = 1)                                           \
     X(CACH, twice_the_cells, "META counts 16 records", im->scene->cache_cells = 16)
 
 #define RECORD_FAULTS(X)                                                                                                       \

@@ -18,7 +18,7 @@
     X(META, no_map_cells, "lightmap of 40 receivers, 0 cells", im->scene->map_cells = 0)                                       \
     X(META, splits_without_the_effect, "lightmap of 0 receivers, 0 cells and 2 splits contradicts",                            \
       EFFECTS(0, BIT(LIGHTMAP) | BIT(LIGHTMAP_RAYS)), im->scene->map_receivers = im->scene->map_cells = 0)                     \
-    X(META, padding_in_use, "padding is not 0", im->scene->map_pad = 1)                                                        \
+    X(META, detail_of_points, "point_detail must be in 0..0", im->scene->point_detail = 1)                                     \
     X(MCEL, one_cell_more, "META counts 31 records", ADD(map_cells, 1))                                                        \
     X(MSPL, one_split_less, "META counts 1 records", im->scene->map_splits--)                                                  \
     X(MREC, a_receiver_more, "META counts 41 records", ADD(map_receivers, 1))                                                  \

@@ -4,6 +4,7 @@
  *   chain N             begin from a deep tree of N nodes rather than from the cube
  *   basis               begin from the cube with receivers and a basis rather than with photons
  *   live                begin from the cube with receivers and patches
+ *   points              begin from the cube with a basis whose receivers are points
  *   lightmap            begin from the cube with a lightmap, part of which is left to rays
  *   plain               leave META's derived fields and the sections' sizes as they were: otherwise they follow META's counts
  *   CODE INDEX = HEX    word INDEX of section CODE (modulo its words); "+" adds, "^" flips bits
@@ -44,7 +45,7 @@ typedef struct script {
     edit edits[MAX_EDITS];
     int count;
     uint32_t chain, cut;
-    bool basis, live, lightmap, plain, kept;
+    bool basis, live, points, lightmap, plain, kept;
 } script;
 
 /* ---- reading a script ---- */
@@ -56,6 +57,7 @@ static void read_line(script *s, const char *line) {
         return;
     s->basis |= strcmp(line, "basis") == 0;
     s->live |= strcmp(line, "live") == 0;
+    s->points |= strcmp(line, "points") == 0;
     s->lightmap |= strcmp(line, "lightmap") == 0;
     s->plain |= strcmp(line, "plain") == 0;
     s->kept |= strcmp(line, "kept") == 0;
@@ -221,7 +223,8 @@ static void follow_material(const vit_pack *p, uint32_t index) {
 static void follow_cells(const vit_pack *p, uint32_t triangle) {
     const vit_u32 *sides = p->section[VIT_SECTION_SIDE];
     const vit_cell *cells = p->section[VIT_SECTION_CELL];
-    const vit_u32 count = p->scene->receivers > 0 ? p->scene->receiver_cells : p->scene->cells;
+    const vit_u32 on_surfaces = p->scene->point_levels > 0 ? 0 : p->scene->receiver_cells;
+    const vit_u32 count = p->scene->receivers > 0 ? on_surfaces : p->scene->cells;
     for (uint32_t side = 2 * triangle; count && side < 2 * triangle + 2; side++) {
         const vit_u32 n = sides[side] >> VIT_SIDE_PARTS_SHIFT, first = sides[side] & VIT_SIDE_CELL;
         FUZZ_HOLDS(n >= 1 && first + n * n <= count);
@@ -288,7 +291,8 @@ static void follow_places(const vit_pack *p) {
                              s->map_splits,
                              s->map_receivers};
     const vit_u32 *sides = p->section[VIT_SECTION_MSID];
-    follow_receiver_cells(&indirect, false);
+    if (s->point_levels == 0)
+        follow_receiver_cells(&indirect, false);
     follow_receiver_cells(&lightmap, s->effects & VIT_BIT(LIGHTMAP_RAYS));
     for (vit_u32 i = 0; s->map_cells && i < 2 * s->triangles; i++) {
         const vit_u32 n = sides[i] >> VIT_SIDE_PARTS_SHIFT;
@@ -320,19 +324,35 @@ static void follow_basis(const vit_pack *p) {
 }
 
 /* As cache_find() of kernels/cache.clh does. */
-static void follow_cache(const vit_pack *p) {
-    const vit_scene *s = p->scene;
-    const vit_cache_cell *cells = p->section[VIT_SECTION_CACH];
-    for (vit_u32 i = 0; i < s->cache_cells; i++) {
-        const vit_u32 key = cells[i].key, mask = s->cache_cells - 1;
+static void follow_table(const vit_cache_cell *cells, vit_u32 count, vit_u32 probes) {
+    for (vit_u32 i = 0; i < count; i++) {
+        const vit_u32 key = cells[i].key, mask = count - 1;
         vit_u32 found = VIT_NONE;
-        for (vit_u32 k = 0, at = key & mask; k < s->cache_probes && found == VIT_NONE && cells[at].key <= key; k++) {
+        for (vit_u32 k = 0, at = key & mask; k < probes && found == VIT_NONE && cells[at].key <= key; k++) {
             if (cells[at].key == key && ((cells[at].word[2] ^ cells[i].word[2]) & VIT_CACHE_TAG) == 0)
                 found = at;
             at = (at + 1) & mask;
         }
         FUZZ_HOLDS(key == VIT_CACHE_EMPTY || found == i);
     }
+}
+
+static void follow_cache(const vit_pack *p) {
+    const vit_scene *s = p->scene;
+    const vit_cache_cell *points = p->section[VIT_SECTION_RCEL];
+    const vit_receiver *receivers = p->section[VIT_SECTION_RECV];
+    follow_table(p->section[VIT_SECTION_CACH], s->cache_cells, s->cache_probes);
+    if (s->point_levels == 0)
+        return;
+    follow_table(points, s->receiver_cells, VIT_CACHE_PROBES);
+    for (vit_u32 i = 0; i < s->receiver_cells; i++)
+        for (vit_u32 q = 0; points[i].key != VIT_CACHE_EMPTY && !(points[i].word[2] & VIT_CACHE_PARTED) && q < 8; q++) {
+            const vit_u32 point = points[i].word[1] >> VIT_POINT_BITS * q & VIT_POINT_NONE;
+            if (point >= VIT_CACHE_POINTS)
+                continue;
+            FUZZ_HOLDS(points[i].word[0] + point < s->receivers);
+            sum += receivers[points[i].word[0] + point].irradiance[1] > 1.0f;
+        }
 }
 
 static void follow_patches(const vit_pack *p) {
@@ -471,6 +491,8 @@ void fuzz_pack(const uint8_t *data, size_t size) {
         fixture_make_live(f);
     else if (s.basis)
         fixture_make_basis(f);
+    else if (s.points)
+        fixture_make_points(f);
     else if (s.lightmap)
         fixture_make_lightmap(f);
     else

@@ -32,7 +32,7 @@ static const char codes[][5] = {
     "MSPL",
 };
 
-static const char *const bases[] = {"basis", "live", "lightmap"};
+static const char *const bases[] = {"basis", "live", "points", "lightmap"};
 
 static const uint32_t values[] = {
     0,          1,          2,          3,          0x10,       0x40,       0xff,       0x1000,
