@@ -239,7 +239,7 @@ static vit_status look_again(finding *f, baked *out, vit_text *why) {
         (status == VIT_OK && !receivers_smooth(r, light.irradiance, light.noise, columns, f->in->threads)))
         status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     out->report = again.report;
-    if (status == VIT_OK)
+    if (status == VIT_OK && light.irradiance) /* bake_fail() fails */
         status = keep(f->in, &s, light.irradiance, out, why);
     free(light.irradiance);
     free(light.noise);

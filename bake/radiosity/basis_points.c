@@ -54,7 +54,7 @@ static vit_status find_light(finding *f, bool rough, vit_text *why) {
     f->light = malloc(((size_t)count * f->in->columns + 1u) * sizeof *f->light);
     f->noise = malloc((count + 1u) * sizeof *f->noise);
     vit_status status = places && f->light && f->noise ? VIT_OK : bake_fail(why, VIT_FAILED, "indirect light: out of memory");
-    for (uint32_t i = 0; i < count && status == VIT_OK; i++) {
+    for (uint32_t i = 0; places && i < count; i++) {
         const cache_sight *s = f->sights.sight + f->met->taken[i];
         places[i] = (receiver){.side = s->side, .b1 = s->b1, .b2 = s->b2, .asked = true};
     }
@@ -206,7 +206,7 @@ static vit_status put(const finding *f, basis_points *out, float *irradiance, vi
     ordered *order = malloc((m->cell_count + 1u) * sizeof *order);
     vit_cache_cell *records = malloc((m->cell_count + f->walls.count + 1u) * sizeof *records);
     vit_status status = order && records ? VIT_OK : bake_fail(why, VIT_FAILED, "indirect light: out of memory");
-    if (status == VIT_OK) {
+    if (order && records) {
         for (uint32_t i = 0; i < m->cell_count; i++)
             order[i] = (ordered){place_of(m->cells + i), i};
         qsort(order, m->cell_count, sizeof *order, compare);
