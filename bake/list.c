@@ -63,6 +63,10 @@ static void print_materials(const model *m, FILE *to) {
             (void)fputs(", texture ", to);
             print_name(to, m->images[k->image].name);
         }
+        if (MODEL_HAS_NORMAL_MAP(k)) {
+            (void)fputs(", normal map ", to);
+            print_name(to, m->images[k->normal_image].name);
+        }
         (void)fputc('\n', to);
     }
 }

@@ -56,6 +56,11 @@ static void materials(const model *m, FILE *to) {
             text(to, "texture", m->images[k->image].name);
         else
             (void)fputs("\"texture\": null", to);
+        (void)fputs(", ", to);
+        if (MODEL_HAS_NORMAL_MAP(k))
+            text(to, "normal_map", m->images[k->normal_image].name);
+        else
+            (void)fputs("\"normal_map\": null", to);
         (void)fputc('}', to);
     }
     (void)fputs("]", to);

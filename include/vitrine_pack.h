@@ -22,7 +22,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 10u
+#define VIT_PACK_VERSION 11u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \
@@ -38,7 +38,9 @@
  * SIDE: a word a side of a triangle, where its cells are in CELL (VIT_SIDE_*). CELL: which zones' photons count there and how
  * much of the kernel lies on surfaces (vit_cell). Both are empty without the effects ZONES and AREA. EMIT: sets of points on
  * area lights, then sets of directions to the sky. SKYT: the sky's picture. MSID: as SIDE, for the
- * lightmap, whose cells are MCEL. RCEL: with the effect POINTS it has as many vit_cache_cell records. XFER: a vit_transfer. */
+ * lightmap, whose cells are MCEL. RCEL: with the effect POINTS it has as many vit_cache_cell records. XFER: a vit_transfer.
+ * MAPS: empty where nothing but colour changes from texel to texel. */
+#define VIT_HAS_MAPS(effects) ((effects) & (VIT_BIT(NORMAL_MAPS)))
 #define VIT_SECTIONS(X)                                                                                                        \
     X(META, vit_scene, 1u)                                                                                                     \
     X(CAMS, vit_camera, s->frames)                                                                                             \
@@ -47,6 +49,7 @@
     X(ATTR, vit_attributes, s->triangles)                                                                                      \
     X(BVHN, vit_bvh_node, s->nodes)                                                                                            \
     X(MATL, vit_material, s->materials)                                                                                        \
+    X(MAPS, vit_maps, VIT_HAS_MAPS(s->effects) ? s->materials : 0)                                                             \
     X(TEXR, vit_texture, s->textures)                                                                                          \
     X(MIPS, vit_mip, s->mips)                                                                                                  \
     X(ATLS, vit_u32, s->texels)                                                                                                \

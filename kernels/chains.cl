@@ -16,8 +16,9 @@ static inline li chain_goes_on(global const vit_attributes *attributes, global c
     return r;
 }
 
-kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_triangle, global float *hit_distance,
-                   global float *rays, volatile global uint *split, volatile global uint *reached WORK_PARAMETERS) {
+kernel void chains(RAY_SCENE_PARAMETERS, global const vit_maps *maps, ROUND_PARAMETERS, global uint *hit_triangle,
+                   global float *hit_distance, global float *rays, volatile global uint *split,
+                   volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -38,8 +39,9 @@ kernel void chains(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global uint *hit_tria
         WORK_LANES(surface_points, going);
         if (VIT_EFFECT_REACH)
             reach_note(scene, attributes, reached, going, triangle, VIT_REACHED_VIEW);
-        surface s = surface_at(SURFACE_SCENE, o, d, l_sel(going, t, L_F(1)), going, triangle, cone);
+        surface s = surface_at(SURFACE_SCENE, maps, o, d, l_sel(going, t, L_F(1)), going, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
+        WORK_LANES(texture_fetches, s.mapped);
         li glass = VIT_EFFECT_GLASS ? going & L_NE(s.specular.kind, L_I((int)VIT_MIRROR)) : L_I(0);
         lv3 next = specular_mirrored(d, s.normal, s.face), tint = s.specular.specular, from = s.position;
         /* 3. Glass: the first one forks into the two layers, later ones take the greater part, the chain's last ray leaves. */

@@ -143,9 +143,9 @@ static inline void photon_on(const surface *s, li specular, lf u, lf t, lv3 d, l
 }
 
 /* One path a lane. vit_scene.paths and each light's path_first are multiples of 16, so a packet has one light. */
-kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, uint frame, global const uint *sides,
-                         global const uint *cells, global vit_photon *photons, volatile global uint *counters,
-                         volatile global uint *reached WORK_PARAMETERS) {
+kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_maps *maps, global const vit_light *lights, uint frame,
+                         global const uint *sides, global const uint *cells, global vit_photon *photons,
+                         volatile global uint *counters, volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, paths = scene->paths;
     if (first >= paths)
         return;
@@ -170,11 +170,12 @@ kernel void photon_paths(RAY_SCENE_PARAMETERS, global const vit_light *lights, u
             WORK_TRACED(r);
             alive &= L_NE(triangle, L_I((int)VIT_NONE));
             t = l_sel(alive, t, L_F(1));
-            s = surface_at(SURFACE_SCENE, o, d, t, alive, triangle, L_F(PHOTON_CONE));
+            s = surface_at(SURFACE_SCENE, VIT_EFFECT_CAUSTICS ? maps : 0, o, d, t, alive, triangle, L_F(PHOTON_CONE));
             WORK_LANES(surface_points, alive);
             if (VIT_EFFECT_REACH)
                 reach_note(scene, attributes, reached, alive, triangle, VIT_REACHED_PHOTON);
             WORK_LANES(texture_fetches, s.textured);
+            WORK_LANES(texture_fetches, s.mapped);
         }
         /* Mirrors and glass store nothing; without caustics they end paths. */
         li matt = alive;

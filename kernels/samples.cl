@@ -57,12 +57,18 @@ static inline lv3 sample_own_light(global const vit_scene *scene, const surface 
                    fma(all.z, L_F(scene->ambient[2]), s->emission.z));
 }
 
-kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit_triangle, global const float *hit_distance,
-                    global const float *rays, global const vit_sky_texel *sky, global const uint *sides,
-                    global const uint *cells, global float *position, global uint *normal, global uint *albedo,
-                    global float *direct, global uint *accept, global float *inverse_area, global uint *specular,
-                    RECEIVER_PARAMETERS, global float *indirect, LIGHTMAP_PARAMETERS, global uint *by_rays,
-                    volatile global uint *reached WORK_PARAMETERS) {
+/* Of light that is baked for the unbent normal, what one that is bent by a normal map gets: as if the half space before the
+ * surface were evenly bright. METHODS.md, "View samples". */
+static inline lf sample_open_part(const surface *s) {
+    return fma(lv3_dot(s->normal, s->smooth), L_F(0.5f), L_F(0.5f));
+}
+
+kernel void samples(SURFACE_PARAMETERS, global const vit_maps *maps, ROUND_PARAMETERS, global const uint *hit_triangle,
+                    global const float *hit_distance, global const float *rays, global const vit_sky_texel *sky,
+                    global const uint *sides, global const uint *cells, global float *position, global uint *normal,
+                    global uint *albedo, global float *direct, global uint *accept, global float *inverse_area,
+                    global uint *specular, RECEIVER_PARAMETERS, global float *indirect, LIGHTMAP_PARAMETERS,
+                    global uint *by_rays, volatile global uint *reached WORK_PARAMETERS) {
     uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
     if (first >= n || round_skips(first, active))
         return;
@@ -96,8 +102,9 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
         /* The footprint goes on widening behind a mirror as if it were flat. */
         if (VIT_EFFECT_CHAINS)
             cone *= l_div(whole, l_max(t, L_F(1e-30f)));
-        surface s = surface_at(SURFACE_SCENE, eye, d, t, hit, triangle, cone);
+        surface s = surface_at(SURFACE_SCENE, maps, eye, d, t, hit, triangle, cone);
         WORK_LANES(texture_fetches, s.textured);
+        WORK_LANES(texture_fetches, s.mapped);
         /* Lanes that hit nothing are zeros, as in packets that hit nothing: traces are the same at every width. */
         sample_store_position(scene, s.position, s.face, hit, position, first);
         L_STORE(l_sel_u(hit, l_encode_normal(s.normal), L_U(0)), normal + first);
@@ -120,15 +127,18 @@ kernel void samples(SURFACE_PARAMETERS, ROUND_PARAMETERS, global const uint *hit
             if (VIT_EFFECT_AREA)
                 L_STORE(l_sel(hit, cell_inverse_area(cells, &cell), L_F(0)), inverse_area + first);
         }
-        if (VIT_EFFECT_ON_CELLS)
-            lv3_store_planes(receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_LIVE ? relit : receivers,
-                                             hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position,
-                                             VIT_EFFECT_REACH ? reached + scene->materials + VIT_REACHED_MORE : reached),
-                             indirect, n, first);
+        if (VIT_EFFECT_ON_CELLS) {
+            lv3 e = receivers_light(sides, receiver_cells, receiver_splits, VIT_EFFECT_LIVE ? relit : receivers, hit & ~s.dark,
+                                    triangle, s.back, s.b1, s.b2, s.position,
+                                    VIT_EFFECT_REACH ? reached + scene->materials + VIT_REACHED_MORE : reached);
+            lv3_store_planes(VIT_EFFECT_NORMAL_MAPS ? lv3_scale(e, sample_open_part(&s)) : e, indirect, n, first);
+        }
         /* 6. Baked light of the sky and of area lights. */
         if (VIT_EFFECT_LIGHTMAP) {
             lv3 e = receivers_light(LIGHTMAP, hit & ~s.dark, triangle, s.back, s.b1, s.b2, s.position, 0);
             li unknown = L_LT(e.x, L_F(0));
+            if (VIT_EFFECT_NORMAL_MAPS)
+                e = lv3_scale(e, sample_open_part(&s));
             if (VIT_EFFECT_LIGHTMAP_RAYS)
                 L_STORE(L_AS_UINT(unknown & 1), by_rays + first);
             lv3 a = lv3_scale(l_decode_albedo(l_encode_albedo(s.albedo)), l_sel(hit & ~unknown, L_F(VIT_INV_PI), L_F(0)));

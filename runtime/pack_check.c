@@ -116,8 +116,6 @@ vit_status vit_pack_check_ATTR(const vit_pack *p, vit_text *why) {
             return vit_pack_refuse(why, "section ATTR: triangle %u: unknown flags 0x%x", i, a->material);
         if (!all_finite(a->uv[0], 2) || !all_finite(a->uv[1], 2) || !all_finite(a->uv[2], 2))
             return vit_pack_refuse(why, "section ATTR: triangle %u: a texture coordinate is not finite", i);
-        if (!all_zero(a->pad, 2))
-            return vit_pack_refuse(why, "section ATTR: triangle %u: padding is not 0", i);
     }
     return VIT_OK;
 }
@@ -158,6 +156,22 @@ vit_status vit_pack_check_MATL(const vit_pack *p, vit_text *why) {
         const char *fault = specular_fault(m);
         if (fault)
             return vit_pack_refuse(why, "section MATL: material %u: %s", i, fault);
+    }
+    return VIT_OK;
+}
+
+vit_status vit_pack_check_MAPS(const vit_pack *p, vit_text *why) {
+    const vit_scene *s = p->scene;
+    const vit_maps *maps = p->section[VIT_SECTION_MAPS];
+    for (vit_u32 i = 0; VIT_HAS_MAPS(s->effects) && i < s->materials; i++) {
+        const vit_maps *m = VIT_RECORD(vit_maps, maps, i);
+        if (m->normal != VIT_NONE && m->normal >= s->textures)
+            return vit_pack_refuse(why, "section MAPS: material %u: texture %u of %u", i, m->normal, s->textures);
+        if (!in_range(m->normal_scale, -VIT_MAX_NORMAL_SCALE, VIT_MAX_NORMAL_SCALE))
+            return vit_pack_refuse(why, "section MAPS: material %u: normal_scale must be in -%g..%g", i,
+                                   (double)VIT_MAX_NORMAL_SCALE, (double)VIT_MAX_NORMAL_SCALE);
+        if (!all_zero(m->pad, 2))
+            return vit_pack_refuse(why, "section MAPS: material %u: padding is not 0", i);
     }
     return VIT_OK;
 }

@@ -22,9 +22,9 @@ vit_pack_check vit_pack_check_META;
 /* pack_check_tree.c: triangles, then the tree over them. */
 vit_pack_check vit_pack_check_GEOM, vit_pack_check_BVHN;
 /* pack_check.c: the sections of plain records. */
-vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_TEXR,
-    vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL, vit_pack_check_EMIT,
-    vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
+vit_pack_check vit_pack_check_CAMS, vit_pack_check_LITE, vit_pack_check_ATTR, vit_pack_check_MATL, vit_pack_check_MAPS,
+    vit_pack_check_TEXR, vit_pack_check_MIPS, vit_pack_check_ATLS, vit_pack_check_SIDE, vit_pack_check_CELL,
+    vit_pack_check_EMIT, vit_pack_check_SKYT, vit_pack_check_PHOT, vit_pack_check_GOLD;
 /* pack_check_receivers.c: receivers of indirect light, and of the lightmap. */
 vit_pack_check vit_pack_check_RCEL, vit_pack_check_RSPL, vit_pack_check_RECV, vit_pack_check_MSID, vit_pack_check_MCEL,
     vit_pack_check_MSPL, vit_pack_check_MREC;

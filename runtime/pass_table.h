@@ -39,13 +39,14 @@
       B(looked_up), B(receivers), B(radiosity), B(relit), ARGS_WORK)                                                           \
     X(visibility, ALWAYS, EACH, PER_BUNDLE, ONCE, W(hit_triangle) | W(hit_distance), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),   \
       B(hit_distance), ARGS_WORK)                                                                                              \
-    X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS,            \
+    X(chains, ON_CHAINS, EACH, PER_SAMPLE, ONCE, W(hit_triangle) | W(hit_distance) | W(rays) | W(split), ARGS_RAYS, B(maps),   \
       ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(split), B(reached), ARGS_WORK)                                  \
     X(samples, ALWAYS, EACH, PER_SAMPLE, ONCE,                                                                                 \
       W(position) | W(normal) | W(albedo) | W(direct) | W(accept) | W(inverse_area) | W(specular) | W(indirect) | W(by_rays),  \
-      ARGS_SURFACE, ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position), B(normal), \
-      B(albedo), B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits), B(receivers),      \
-      B(relit), B(indirect), B(map_sides), B(map_cells), B(map_splits), B(map_receivers), B(by_rays), B(reached), ARGS_WORK)   \
+      ARGS_SURFACE, B(maps), ARGS_ROUND, B(hit_triangle), B(hit_distance), B(rays), B(sky), B(sides), B(cells), B(position),   \
+      B(normal), B(albedo), B(direct), B(accept), B(inverse_area), B(specular), B(receiver_cells), B(receiver_splits),         \
+      B(receivers), B(relit), B(indirect), B(map_sides), B(map_cells), B(map_splits), B(map_receivers), B(by_rays),            \
+      B(reached), ARGS_WORK)                                                                                                   \
     X(point_light, ON(POINTS), EACH, PER_SAMPLE, ONCE, W(indirect), B(scene), ARGS_ROUND, B(hit_triangle), B(position),        \
       B(normal), B(albedo), B(receiver_cells), B(receivers), B(relit), B(indirect), ARGS_WORK)                                 \
     X(cache_sample, ON(LIVE_CACHE), FIRST, PER_SAMPLE, ONCE, W(cache_frame), ARGS_RAYS, ARGS_ROUND, B(hit_triangle),           \
@@ -65,8 +66,8 @@
     X(ambient_light, ON(OCCLUSION), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(hit_triangle), B(position),     \
       B(normal), B(albedo), B(specular), B(cache), B(cache_counts), B(direct), ARGS_WORK)                                      \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters), B(scene), V(round), B(masks), B(counters))  \
-    X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(lights), V(frame), B(sides),     \
-      B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                                                                \
+    X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(maps), B(lights), V(frame),      \
+      B(sides), B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                                                      \
     X(cluster_keys, ON(PHOTONS), EACH, PER_RUN, ONCE, W(masks) | W(keys) | W(counters), B(scene), B(cameras), V(frame),        \
       V(run), B(hit_triangle), B(position), B(normal), B(albedo), B(masks), B(keys), B(counters))                              \
     X(number_nodes, ON(PHOTONS), EACH, ONE_GROUP, ONCE, W(prefix) | W(counters), B(scene), B(masks), B(prefix), B(counters))   \

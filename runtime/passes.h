@@ -56,6 +56,7 @@ typedef struct vit_launch {
     X(attributes, ALWAYS, ATTR, s->triangles * sizeof(vit_attributes))                                                         \
     X(bvh, ALWAYS, BVHN, s->nodes * sizeof(vit_bvh_node))                                                                      \
     X(materials, ALWAYS, MATL, s->materials * sizeof(vit_material))                                                            \
+    X(maps, ON(NORMAL_MAPS), MAPS, s->materials * sizeof(vit_maps))                                                            \
     X(textures, ON(TEXTURES) | ON(CUTOUT), TEXR, s->textures * sizeof(vit_texture))                                            \
     X(mips, ON(TEXTURES) | ON(CUTOUT), MIPS, s->mips * sizeof(vit_mip))                                                        \
     X(texels, ON(TEXTURES) | ON(CUTOUT), ATLS, (uint64_t)s->texels * 4)                                                        \

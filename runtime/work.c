@@ -61,7 +61,7 @@
     X(account, (4 + 4 + 4) * (uint64_t)VIT_COUNTER_COUNT)
 
 #define RECORDS (sizeof(vit_triangle) + sizeof(vit_attributes) + sizeof(vit_material))
-#define HITS (RECORDS * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
+#define HITS ((RECORDS + z->maps) * w[VIT_WORK_surface_points] + 4 * 4 * w[VIT_WORK_texture_fetches])
 /* What passes of direct light read and write a sample. */
 #define LIT (4 + z->position + 4 + 4 + 12 + 12 + z->face + z->view + z->specular)
 #define BOX_BYTES(zones) (48 + (zones)) /* of positions and of normals, and the zones accepted */
@@ -90,6 +90,7 @@ typedef struct sizes {
     uint64_t cached;             /* records of the cache */
     uint64_t points, patches, stride, receivers;        /* numbers of records */
     uint64_t right, mix, coded, projected, mixed, sums; /* bytes: of the transfer matrix's parts, and of what is between */
+    uint64_t maps;                                      /* bytes: of a hit's maps */
     uint64_t zones, baked,
         cell; /* bytes, 0 without zones and area: zones accepted, what is baked for a sample, side and cell looked up */
 } sizes;
@@ -154,6 +155,7 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.activate = 4 + (l->effects & ON(ANTIALIAS) ? 4u : 0u) + (l->effects & ON(GLASS) ? 4u : 0u);
     z.end = l->effects & ON_CHAINS ? 28 : 0;
     z.specular = l->effects & ON(SPECULAR) ? 8 : 0;
+    z.maps = VIT_HAS_MAPS(l->effects) ? sizeof(vit_maps) : 0;
     z.face = l->effects & ON(SMOOTH) ? sizeof(vit_triangle) : 0;
     z.view = z.specular && z.end ? 12 : 0;
     z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.specular ? 4u : 0u);

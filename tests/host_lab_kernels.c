@@ -77,7 +77,7 @@ static void surfaces(const host_lab_mesh *m, const float *rays, const float *dis
         lf limit;
         ray_packet r = packet(rays, n, i, &limit);
         li found = L_AS_INT(L_LOAD(triangle + i)), hit = L_NE(found, L_I((int)VIT_NONE));
-        surface s = surface_at(MESH, r.o, r.d, l_sel(hit, L_LOAD(distance + i), L_F(1)), hit, found, L_F(0));
+        surface s = surface_at(MESH, 0, r.o, r.d, l_sel(hit, L_LOAD(distance + i), L_F(1)), hit, found, L_F(0));
         lv3_store_planes(s.position, out, n, i);
         lv3_store_planes(s.face, VIT_PLANE(out, 3, n), n, i);
         lv3_store_planes(s.normal, VIT_PLANE(out, 6, n), n, i);
@@ -260,7 +260,7 @@ static void weights(const host_lab_mesh *m, const float *rays, const float *dist
         lf limit;
         ray_packet r = packet(rays, n, i, &limit);
         li found = L_AS_INT(L_LOAD(triangle + i)), hit = L_NE(found, L_I((int)VIT_NONE));
-        surface s = surface_at(MESH, r.o, r.d, l_sel(hit, L_LOAD(distance + i), L_F(1)), hit, found, L_F(0));
+        surface s = surface_at(MESH, 0, r.o, r.d, l_sel(hit, L_LOAD(distance + i), L_F(1)), hit, found, L_F(0));
         L_STORE(s.b1, b1_b2 + i);
         L_STORE(s.b2, VIT_PLANE(b1_b2, 1, n) + i);
         L_STORE(s.back, back + i);

@@ -48,6 +48,7 @@ typedef struct pack_fixture {
     vit_attributes attributes[FIXTURE_TRIANGLES];
     vit_bvh_node nodes[FIXTURE_TRIANGLES]; /* 5 in use for the cube */
     vit_material materials[2];
+    vit_maps maps[2];
     vit_texture textures[1];
     vit_mip mips[3];
     vit_u32 texels[FIXTURE_TEXELS];
@@ -143,11 +144,11 @@ static inline void fixture_scene(vit_scene *s) {
                      .frames = FIXTURE_FRAMES,
                      .fps = 30,
                      .tile = 16,
-                     .effects = VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) | VIT_BIT(TEXTURES) | VIT_BIT(INDIRECT) |
-                                VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) | VIT_BIT(ZONES) | VIT_BIT(AREA) |
-                                VIT_BIT(SEQUENCE) | VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) |
-                                VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) |
-                                VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS),
+                     .effects = VIT_BIT(SMOOTH) | VIT_BIT(NORMAL_MAPS) | VIT_BIT(LIGHTS) | VIT_BIT(SPOT) | VIT_BIT(RANGE) |
+                                VIT_BIT(TEXTURES) | VIT_BIT(INDIRECT) | VIT_BIT(PHOTONS) | VIT_BIT(TRACED) | VIT_BIT(LIST) |
+                                VIT_BIT(ZONES) | VIT_BIT(AREA) | VIT_BIT(SEQUENCE) | VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) |
+                                VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) |
+                                VIT_BIT(SKY_IMAGE) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(ANTIALIAS),
                      .materials = 2,
                      .textures = 1,
                      .mips = 3,
@@ -207,6 +208,8 @@ static inline void fixture_frames(pack_fixture *f) {
 static inline void fixture_surfaces(pack_fixture *f) {
     f->materials[0] = (vit_material){.albedo = {0.5f, 0.5f, 0.5f}, .texture = VIT_NONE, .exponent = 1, .ior = 1};
     f->materials[1] = (vit_material){.albedo = {1, 1, 1}, .texture = 0, .exponent = 1, .ior = 1};
+    f->maps[0] = (vit_maps){.normal = VIT_NONE, .normal_scale = 1};
+    f->maps[1] = (vit_maps){.normal = 0, .normal_scale = -0.5f};
     f->textures[0] = (vit_texture){.mip_count = 3, .wrap_u = VIT_WRAP_REPEAT, .wrap_v = VIT_WRAP_CLAMP};
     vit_u32 first = 0; /* word of the mip's top left gutter corner */
     for (vit_u32 i = 0; i < 3; i++) {
@@ -475,18 +478,18 @@ static inline pack_sections fixture_sections(const pack_fixture *f) {
     const void *receiver_cells = f->scene.point_levels > 0 ? (const void *)f->point_cells : (const void *)f->receiver_cells;
     return (pack_sections){
         .data = {
-            [VIT_SECTION_META] = &f->scene,        [VIT_SECTION_CAMS] = f->cameras,      [VIT_SECTION_LITE] = f->lights,
-            [VIT_SECTION_GEOM] = f->triangles,     [VIT_SECTION_ATTR] = f->attributes,   [VIT_SECTION_BVHN] = f->nodes,
-            [VIT_SECTION_MATL] = f->materials,     [VIT_SECTION_TEXR] = f->textures,     [VIT_SECTION_MIPS] = f->mips,
-            [VIT_SECTION_ATLS] = f->texels,        [VIT_SECTION_SIDE] = f->sides,        [VIT_SECTION_CELL] = f->cells,
-            [VIT_SECTION_EMIT] = f->emitters,      [VIT_SECTION_SKYT] = f->sky,          [VIT_SECTION_RCEL] = receiver_cells,
-            [VIT_SECTION_RSPL] = f->splits,        [VIT_SECTION_RECV] = f->receivers,    [VIT_SECTION_BGRP] = f->groups,
-            [VIT_SECTION_BWRD] = f->words,         [VIT_SECTION_BCOE] = f->coefficients, [VIT_SECTION_BFRM] = f->basis_frames,
-            [VIT_SECTION_PATC] = f->patches,       [VIT_SECTION_PPNT] = f->patch_points, [VIT_SECTION_GROW] = f->gather_rows,
-            [VIT_SECTION_GATH] = f->gather_words,  [VIT_SECTION_LOOK] = f->looked_up,    [VIT_SECTION_XFER] = f->transfer,
-            [VIT_SECTION_MSID] = f->map_sides,     [VIT_SECTION_MCEL] = f->map_cells,    [VIT_SECTION_MSPL] = f->map_splits,
-            [VIT_SECTION_MREC] = f->map_receivers, [VIT_SECTION_CACH] = f->cache,        [VIT_SECTION_PHOT] = f->photons,
-            [VIT_SECTION_GOLD] = f->golds,
+            [VIT_SECTION_META] = &f->scene,       [VIT_SECTION_CAMS] = f->cameras,       [VIT_SECTION_LITE] = f->lights,
+            [VIT_SECTION_GEOM] = f->triangles,    [VIT_SECTION_ATTR] = f->attributes,    [VIT_SECTION_BVHN] = f->nodes,
+            [VIT_SECTION_MAPS] = f->maps,         [VIT_SECTION_MATL] = f->materials,     [VIT_SECTION_TEXR] = f->textures,
+            [VIT_SECTION_MIPS] = f->mips,         [VIT_SECTION_ATLS] = f->texels,        [VIT_SECTION_SIDE] = f->sides,
+            [VIT_SECTION_CELL] = f->cells,        [VIT_SECTION_EMIT] = f->emitters,      [VIT_SECTION_SKYT] = f->sky,
+            [VIT_SECTION_RCEL] = receiver_cells,  [VIT_SECTION_RSPL] = f->splits,        [VIT_SECTION_RECV] = f->receivers,
+            [VIT_SECTION_BGRP] = f->groups,       [VIT_SECTION_BWRD] = f->words,         [VIT_SECTION_BCOE] = f->coefficients,
+            [VIT_SECTION_BFRM] = f->basis_frames, [VIT_SECTION_PATC] = f->patches,       [VIT_SECTION_PPNT] = f->patch_points,
+            [VIT_SECTION_GROW] = f->gather_rows,  [VIT_SECTION_GATH] = f->gather_words,  [VIT_SECTION_LOOK] = f->looked_up,
+            [VIT_SECTION_XFER] = f->transfer,     [VIT_SECTION_MSID] = f->map_sides,     [VIT_SECTION_MCEL] = f->map_cells,
+            [VIT_SECTION_MSPL] = f->map_splits,   [VIT_SECTION_MREC] = f->map_receivers, [VIT_SECTION_CACH] = f->cache,
+            [VIT_SECTION_PHOT] = f->photons,      [VIT_SECTION_GOLD] = f->golds,
         }};
 }
 

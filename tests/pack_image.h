@@ -27,6 +27,7 @@ typedef struct image {
     vit_attributes *attributes;
     vit_bvh_node *nodes;
     vit_material *materials;
+    vit_maps *maps;
     vit_texture *textures;
     vit_mip *mips;
     vit_u32 *sides;
@@ -71,6 +72,7 @@ static inline image image_of(const pack_fixture *f) {
     im.attributes = section(&im, VIT_SECTION_ATTR);
     im.nodes = section(&im, VIT_SECTION_BVHN);
     im.materials = section(&im, VIT_SECTION_MATL);
+    im.maps = section(&im, VIT_SECTION_MAPS);
     im.textures = section(&im, VIT_SECTION_TEXR);
     im.mips = section(&im, VIT_SECTION_MIPS);
     im.sides = section(&im, VIT_SECTION_SIDE);

@@ -90,9 +90,10 @@ static const struct {
     {"bodies.obj", test_packs_bodies},
     {"bodies.mtl", test_packs_bodies_materials},
     {"shine.cfg", SPECULAR_SCENE("")},
-    /* Phong's lobe on the floor, microfacets on the walls and on leaves with holes */
-    {"gloss.cfg", SPECULAR_SCENE("{ name = \"wall\"; specular = [0.5, 0.4, 0.3]; roughness = 0.4; }, "
-                                 "{ name = \"leaves\"; specular = [0.1, 0.1, 0.1]; roughness = 0.0; }, ")},
+    /* Phong's lobe on the floor, microfacets and a normal map on the walls, microfacets on leaves with holes */
+    {"gloss.cfg",
+     SPECULAR_SCENE("{ name = \"wall\"; specular = [0.5, 0.4, 0.3]; roughness = 0.4; normal_map = \"holes.tga\"; }, "
+                    "{ name = \"leaves\"; specular = [0.1, 0.1, 0.1]; roughness = 0.0; }, ")},
     {"open.cfg", "meshes = ( { file = \"room.obj\"; } );\nambient = [0.5, 0.6, 0.7]; ambient_radius = 0.8;\n"
                  "background = [0.2, 0.3, 0.4]; sky: { light = true; };\n"
                  "materials = ( { name = \"lamp\"; area_light = true; } );\noutput: { width = 48; height = 33; frames = 4; };\n"

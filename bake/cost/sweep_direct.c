@@ -33,8 +33,9 @@ static uint64_t settings_key(const vit_scene *s) {
 
 /* Of all that direct light is made from. Lights differ in their photon paths alone. */
 static uint64_t key_of(const sweep_pack *pack) {
-    static const int seen[] = {VIT_SECTION_CAMS, VIT_SECTION_GEOM, VIT_SECTION_ATTR, VIT_SECTION_MATL, VIT_SECTION_TEXR,
-                               VIT_SECTION_MIPS, VIT_SECTION_ATLS, VIT_SECTION_EMIT, VIT_SECTION_SKYT, VIT_SECTION_CACH};
+    static const int seen[] = {VIT_SECTION_CAMS, VIT_SECTION_GEOM, VIT_SECTION_ATTR, VIT_SECTION_MATL,
+                               VIT_SECTION_TEXR, VIT_SECTION_MIPS, VIT_SECTION_ATLS, VIT_SECTION_EMIT,
+                               VIT_SECTION_SKYT, VIT_SECTION_CACH, VIT_SECTION_MAPS};
     const vit_pack_entry *table = (const void *)((const char *)pack->bytes + sizeof(vit_pack_header));
     const vit_scene *meta = (const void *)((const char *)pack->bytes + table[VIT_SECTION_META].offset);
     uint64_t parts[sizeof seen / sizeof seen[0] + 1] = {settings_key(meta)};

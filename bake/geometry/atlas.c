@@ -32,12 +32,14 @@ typedef struct texture_key {
     int image;
     uint32_t wrap_u, wrap_v;
     uint32_t opaque_from; /* smallest alpha byte that is no hole; 0: no alpha test, 256: all holes */
+    uint32_t map;         /* 1: three numbers, whose means are taken as they are */
 } texture_key;
 
 typedef struct packing {
     const model *m;
     texture_key *keys;  /* a texture */
     double linear[256]; /* of an sRGB byte */
+    double byte[256];   /* of a byte of a map, 0..1 */
 } packing;
 
 static uint32_t opaque_from(const model_material *material) {
@@ -49,20 +51,24 @@ static uint32_t opaque_from(const model_material *material) {
     return a;
 }
 
+/* The texture of that key, which is listed once. */
+static uint32_t texture_of(const texture_key *key, texture_key *keys, atlas *out) {
+    uint32_t t = 0;
+    while (t < out->texture_count && memcmp(keys + t, key, sizeof *key) != 0)
+        t++;
+    if (t == out->texture_count)
+        keys[out->texture_count++] = *key;
+    return t;
+}
+
 /* Lists the textures of materials that a triangle uses. */
 static void collect_textures(const model *m, const bool *used, texture_key *keys, atlas *out) {
     for (int i = 0; i < m->material_count; i++) {
         const model_material *material = m->materials + i;
-        out->material_texture[i] = VIT_NONE;
-        if (material->image < 0 || !used[i])
-            continue;
-        const texture_key key = {material->image, material->wrap_u, material->wrap_v, opaque_from(material)};
-        uint32_t t = 0;
-        while (t < out->texture_count && memcmp(keys + t, &key, sizeof key) != 0)
-            t++;
-        if (t == out->texture_count)
-            keys[out->texture_count++] = key;
-        out->material_texture[i] = t;
+        const texture_key color = {material->image, material->wrap_u, material->wrap_v, opaque_from(material), 0},
+                          normal = {material->normal_image, material->normal_wrap_u, material->normal_wrap_v, 0, 1};
+        out->material_texture[i] = material->image >= 0 && used[i] ? texture_of(&color, keys, out) : VIT_NONE;
+        out->material_normal[i] = MODEL_HAS_NORMAL_MAP(material) && used[i] ? texture_of(&normal, keys, out) : VIT_NONE;
     }
 }
 
@@ -152,6 +158,13 @@ static vit_status place_mips(atlas *out, vit_text *why) {
     return VIT_OK;
 }
 
+static uint32_t map_word(const double mean[3]) {
+    uint32_t word = 0;
+    for (int k = 0; k < 3; k++)
+        word |= (uint32_t)(mean[k] * VIT_MAP_ONE + 0.5) << (10 * k);
+    return word;
+}
+
 static uint32_t texel_word(const double linear[3]) {
     uint32_t word = 0;
     for (int k = 0; k < 3; k++)
@@ -178,10 +191,11 @@ static double span_weight(const span *s, uint32_t i) {
 }
 
 /* One texel of a level: the mean of the linear colours that it covers, of cut-outs weighted by alpha. It is opaque if at least
- * half of what it covers is. Where all is transparent the next coarser level gives the colour, so that bilinear filtering next
- * to an edge finds the colour of what is opaque nearby. */
+ * half of what it covers is. Of a map the mean of its numbers, which a normal may be shorter by. Where all is transparent the
+ * next coarser level gives the colour, so that bilinear filtering next to an edge finds the colour of what is opaque nearby. */
 static uint32_t filter_texel(const packing *p, const texture_key *key, const span *x, const span *y, uint32_t coarser) {
     const model_image *image = p->m->images + key->image;
+    const double *value = key->map ? p->byte : p->linear;
     double red = 0.0, green = 0.0, blue = 0.0, weights = 0.0, opaque = 0.0, all = 0.0;
     for (uint32_t j = y->first; j <= y->last; j++) {
         const uint8_t *row = image->rgba + 4 * (size_t)j * (size_t)image->width;
@@ -189,9 +203,9 @@ static uint32_t filter_texel(const packing *p, const texture_key *key, const spa
         for (uint32_t i = x->first; i <= x->last; i++) {
             const uint8_t *texel = row + 4 * (size_t)i;
             const double area = wy * span_weight(x, i), weight = key->opaque_from ? area * texel[3] : area;
-            red += weight * p->linear[texel[0]];
-            green += weight * p->linear[texel[1]];
-            blue += weight * p->linear[texel[2]];
+            red += weight * value[texel[0]];
+            green += weight * value[texel[1]];
+            blue += weight * value[texel[2]];
             weights += weight;
             all += area;
             opaque += texel[3] >= key->opaque_from ? area : 0.0;
@@ -200,7 +214,8 @@ static uint32_t filter_texel(const packing *p, const texture_key *key, const spa
     const uint32_t verdict = 2.0 * opaque >= all ? VERDICT : 0;
     if (!(weights > 0.0))
         return (coarser & ~VERDICT) | verdict;
-    return texel_word((const double[]){red / weights, green / weights, blue / weights}) | verdict;
+    const double mean[3] = {red / weights, green / weights, blue / weights};
+    return key->map ? map_word(mean) : texel_word(mean) | verdict;
 }
 
 static void filter_level(const packing *p, const texture_key *key, const vit_mip *mip, const vit_mip *coarser,
@@ -265,8 +280,10 @@ static vit_status pack_textures(packing *p, atlas *out, vit_text *why) {
     out->texels = calloc(out->texel_count, sizeof *out->texels);
     if (!out->texels)
         return out_of_memory(why);
-    for (int i = 0; i < 256; i++)
+    for (int i = 0; i < 256; i++) {
         p->linear[i] = srgb_linear(i / 255.0);
+        p->byte[i] = i / 255.0;
+    }
     for (uint32_t t = 0; t < out->texture_count; t++)
         write_texture(p, p->keys + t, out->textures + t, out);
     return VIT_OK;
@@ -275,11 +292,12 @@ static vit_status pack_textures(packing *p, atlas *out, vit_text *why) {
 vit_status atlas_pack(const model *m, atlas *out, vit_text *why) {
     *out = (atlas){0};
     const size_t materials = (size_t)m->material_count;
-    packing p = {.m = m, .keys = calloc(materials, sizeof *p.keys)};
+    packing p = {.m = m, .keys = calloc(materials, 2 * sizeof *p.keys)};
     bool *used = calloc(materials, sizeof *used);
     out->material_texture = calloc(materials, sizeof *out->material_texture);
+    out->material_normal = calloc(materials, sizeof *out->material_normal);
     vit_status status = VIT_OK;
-    if (p.keys && used && out->material_texture) {
+    if (p.keys && used && out->material_texture && out->material_normal) {
         for (uint32_t i = 0; i < m->triangles; i++)
             used[m->material[i]] = true;
         collect_textures(m, used, p.keys, out);
@@ -299,5 +317,6 @@ void atlas_free(atlas *a) {
     free(a->textures);
     free(a->mips);
     free(a->material_texture);
+    free(a->material_normal);
     *a = (atlas){0};
 }

@@ -1,6 +1,7 @@
 /* Triangles and attributes in the BVH's leaf order, as records.clh lays them out. Plain arithmetic throughout
  * (-ffp-contract=off): the bytes do not depend on compiler or machine. */
 #include "geometry/bvh.h"
+#include "geometry/tangents.h"
 #include "common/fail.h"
 #include "common/octahedral.h"
 #include "common/triangle.h"
@@ -47,7 +48,8 @@ static void pack_attributes(const model *m, const uint32_t corner[3], uint32_t m
         a->normal[i] = normals[corner[i]];
         memcpy(a->uv[i], m->uv + 2 * (size_t)corner[i], sizeof a->uv[i]);
     }
-    a->material = material | (is_flat(m, corner, t) ? 0 : VIT_TRIANGLE_SMOOTH);
+    const bool bent = MODEL_HAS_NORMAL_MAP(&m->materials[material]);
+    a->material = material | (is_flat(m, corner, t) && !bent ? 0 : VIT_TRIANGLE_SMOOTH);
 }
 
 /* How far rays leave a surface, metres. A computed hit position is wrong by some ulps of the largest coordinate that went into
@@ -78,12 +80,21 @@ vit_status geometry_pack(const model *m, const bvh *b, geometry *out, vit_text *
     }
     for (uint32_t i = 0; i < m->vertices; i++)
         normals[i] = normal_word(m->normal + 3 * (size_t)i);
-    for (uint32_t i = 0; i < m->triangles; i++) {
+    vit_u32 *tangents; /* of the model's triangles */
+    const vit_status status = tangents_pack(m, normals, &tangents, why);
+    for (uint32_t i = 0; i < m->triangles && status == VIT_OK; i++) {
         const uint32_t *corner = m->index + 3 * (size_t)b->order[i];
         pack_triangle(m, corner, out->triangles + i);
         pack_attributes(m, corner, m->material[b->order[i]], normals, out->triangles + i, out->attributes + i);
+        if (tangents)
+            memcpy(out->attributes[i].tangent, tangents + 2 * (size_t)b->order[i], sizeof out->attributes[i].tangent);
     }
     free(normals);
+    free(tangents);
+    if (status != VIT_OK) {
+        geometry_free(out);
+        return status;
+    }
     out->ray_offset = geometry_ray_offset(m);
     out->box_pad = b->box_pad;
     return VIT_OK;

@@ -24,6 +24,14 @@ void import_emission(const importer *im, model_material *m, const float color[3]
     m->states_unit = im->states_units;
 }
 
+/* The first ones, as they are. A normal map of others has no place then. */
+static void plain_coordinates(material_use *use) {
+    if (use->uv_set != 0 || use->has_transform)
+        use->m.normal_scale = 0.0f;
+    use->uv_set = 0;
+    use->has_transform = false;
+}
+
 /* What the scene file says beats what the mesh says. */
 static void apply_override(importer *im, material_use *use) {
     for (int i = 0; i < im->s->material_count; i++) {
@@ -48,9 +56,18 @@ static void apply_override(importer *im, material_use *use) {
             memcpy(use->image, o->texture, sizeof use->image);
             use->image_resolved = true;
             use->image_line = o->line;
-            use->uv_set = 0;
-            use->has_transform = false;
             use->m.wrap_u = use->m.wrap_v = VIT_WRAP_REPEAT;
+            if (o->texture[0]) /* it lies otherwise than the file's did, if that had other coordinates */
+                plain_coordinates(use);
+        }
+        if (o->has_normal_map) {
+            memcpy(use->normal, o->normal_map, sizeof use->normal);
+            use->normal_resolved = true;
+            use->image_line = o->line;
+            use->m.normal_wrap_u = use->m.normal_wrap_v = VIT_WRAP_REPEAT;
+            if (!use->image[0])
+                plain_coordinates(use);
+            use->m.normal_scale = o->normal_map[0] ? 1.0f : 0.0f;
         }
     }
 }
@@ -107,21 +124,35 @@ static bool has_alpha(const model_image *image, float factor, float cutoff) {
 }
 
 /* What is wrong with an image that the scene file names is told of with its line. */
-static bool take_texture(importer *im, material_use *use) {
+static bool take_texture(importer *im, const material_use *use, bool normal, int *image) {
     const char *file = im->file;
+    const bool resolved = normal ? use->normal_resolved : use->image_resolved;
     char where[SCENE_PATH + 16];
     (void)snprintf(where, sizeof where, "%.*s:%d", SCENE_PATH - 1, im->s->path, use->image_line);
-    im->file = use->image_resolved ? where : file;
-    const bool fine = import_texture(im, use->image, use->image_resolved, use->m.name, &use->m.image);
+    im->file = resolved ? where : file;
+    const bool fine = import_texture(im, normal ? use->normal : use->image, resolved, use->m.name,
+                                     normal ? "done without it" : IMPORT_PLAIN_COLOR, image);
     im->file = file;
     return fine;
+}
+
+/* Where the map is missing there is none. */
+static bool take_normal_map(importer *im, material_use *use) {
+    int image;
+    if (!MODEL_HAS_NORMAL_MAP(&use->m))
+        return true;
+    if (!take_texture(im, use, true, &image))
+        return false;
+    use->m.normal_image = image;
+    use->m.normal_scale = image >= 0 ? use->m.normal_scale : 0.0f;
+    return true;
 }
 
 bool import_material_index(importer *im, material_use *use, uint32_t *index) {
     model *m = im->m;
     if (use->index < 0) {
         const bool seen = use->m.albedo[0] > 0 || use->m.albedo[1] > 0 || use->m.albedo[2] > 0 || use->m.cutoff > 0;
-        if (use->image[0] && seen && !take_texture(im, use))
+        if ((use->image[0] && seen && !take_texture(im, use, false, &use->m.image)) || !take_normal_map(im, use))
             return false;
         if (use->m.image < 0 && use->has_plain)
             memcpy(use->m.albedo, use->plain, sizeof use->plain);

@@ -296,6 +296,14 @@ static bool add_instance(importer *im, instance *in) {
                              use->m.name, part->name))
             return false;
     }
+    if (MODEL_HAS_NORMAL_MAP(&im->m->materials[material]) && !has_uv && !use->warned_normal_uv) {
+        use->warned_normal_uv = true;
+        if (!import_not_done(im,
+                             "material '%.100s': mesh '%.100s' and perhaps others have no texture coordinates: its normal map "
+                             "does nothing there",
+                             use->m.name, part->name))
+            return false;
+    }
     add_triangles(im, in, use, material);
     return true;
 }

@@ -115,20 +115,19 @@ const char *import_image(importer *im, const char *name, bool resolved, model_im
     return locate(im, name, resolved, &embedded, out->name) ? load(im, embedded, out) : "is missing";
 }
 
-bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image) {
-    static const char plain[] = "its plain colour is used";
+bool import_texture(importer *im, const char *name, bool resolved, const char *material, const char *instead, int *image) {
     model *m = im->m;
     model_image loaded = {0};
     int embedded;
     *image = -1;
     if (!locate(im, name, resolved, &embedded, loaded.name))
-        return import_without(im, material, name, "is missing", plain);
+        return import_without(im, material, name, "is missing", instead);
     *image = find_image(m, loaded.name);
     if (*image >= 0)
         return true;
     const char *wrong = load(im, embedded, &loaded);
     if (wrong)
-        return import_without(im, material, name, wrong, plain);
+        return import_without(im, material, name, wrong, instead);
     im->texels += (uint64_t)loaded.width * (uint64_t)loaded.height;
     if (im->texels > IMPORT_TEXELS ||
         !import_room(im, &m->images, &im->image_room, (size_t)m->image_count + 1, sizeof *m->images)) {

@@ -9,6 +9,7 @@
 
 /* Cameras, lights, files: more than any sane scene has. */
 enum { MOST_NAMED = 1 << 20 };
+enum { MATERIAL_IMAGES = 2 }; /* of a material: colour and normal map */
 
 /* The head of a model: how many of each follow, in this order, and what is added up. */
 typedef struct model_head {
@@ -161,7 +162,9 @@ static bool good_material(model_material *m, int images) {
            within(&m->lobe_alpha, 1, 0.0f, 1.0f) && within(&m->ior, 1, VIT_MIN_IOR, VIT_MAX_IOR) &&
            within(m->absorption, 3, 0.0f, VIT_MAX_RADIANCE) && is_bool(&m->area_light) && m->image >= -1 && m->image < images &&
            m->wrap_u <= VIT_WRAP_MIRROR && m->wrap_v <= VIT_WRAP_MIRROR && within(&m->cutoff, 1, 0.0f, 1.0f) &&
-           within(&m->alpha, 1, 0.0f, 1.0f);
+           within(&m->alpha, 1, 0.0f, 1.0f) && within(&m->normal_scale, 1, -VIT_MAX_NORMAL_SCALE, VIT_MAX_NORMAL_SCALE) &&
+           (!MODEL_HAS_NORMAL_MAP(m) || (m->normal_image >= 0 && m->normal_image < images)) &&
+           m->normal_wrap_u <= VIT_WRAP_MIRROR && m->normal_wrap_v <= VIT_WRAP_MIRROR;
 }
 
 static bool good_camera(model_camera *c) {
@@ -190,8 +193,8 @@ static bool good_format(const model_format *f) {
 /* Counts that can be together. */
 static bool good_head(const importer *im, const model_head *h) {
     return h->triangles <= VIT_MAX_TRIANGLES && h->vertices <= 3 * h->triangles && h->materials <= h->triangles &&
-           h->images <= h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED && h->meshes <= MOST_NAMED &&
-           h->extensions <= MODEL_EXTENSIONS * 2 && h->formats == 1 && h->files <= MOST_NAMED &&
+           h->images <= MATERIAL_IMAGES * h->materials && h->cameras <= MOST_NAMED && h->lights <= MOST_NAMED &&
+           h->meshes <= MOST_NAMED && h->extensions <= MODEL_EXTENSIONS * 2 && h->formats == 1 && h->files <= MOST_NAMED &&
            h->overrides == (uint64_t)im->s->material_count && h->texels >= im->texels && isfinite(h->step);
 }
 

@@ -72,13 +72,14 @@ typedef struct material_use {
     char image[SCENE_PATH]; /* file, or "*index" of an image in the mesh file; "" if none */
     bool has_plain;         /* without the image the albedo is `plain` */
     float plain[3];
-    bool image_resolved; /* `image` comes from the scene file: take it as it is */
-    int image_line;      /* there, for errors */
+    char normal[SCENE_PATH];              /* the normal map, likewise; its scale is in m */
+    bool image_resolved, normal_resolved; /* they come from the scene file: take them as they are */
+    int image_line;                       /* there, for errors */
     unsigned uv_set;
     bool has_transform;
-    double uv[6];   /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */
-    bool warned_uv; /* of a mesh without texture coordinates: one warning will do */
-    int index;      /* in model.materials, -1 until a triangle uses it */
+    double uv[6];                     /* u' = uv[0] u + uv[1] v + uv[2], v' = uv[3] u + uv[4] v + uv[5] */
+    bool warned_uv, warned_normal_uv; /* of a mesh without texture coordinates: one warning will do */
+    int index;                        /* in model.materials, -1 until a triangle uses it */
 } material_use;
 
 /* Some floats a vertex, which begin `stride` floats apart; NULL: there are none. */
@@ -218,8 +219,9 @@ const char *import_decode(importer *im, const uint8_t *bytes, size_t size, model
 /* A texture that is missing or broken: an error if strict, else a warning that says what is done `instead`. */
 bool import_without(importer *im, const char *material, const char *name, const char *what, const char *instead);
 /* image `name` of this file, decoded once; *image is its index in model.images, or -1 with a warning that
- * names `material` (not strict) where it is missing or broken. */
-bool import_texture(importer *im, const char *name, bool resolved, const char *material, int *image);
+ * names `material` and what is done `instead` (not strict) where it is missing or broken. */
+bool import_texture(importer *im, const char *name, bool resolved, const char *material, const char *instead, int *image);
+#define IMPORT_PLAIN_COLOR "its plain colour is used"
 
 /* ---- import_transparency.c ---- */
 

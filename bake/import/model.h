@@ -27,8 +27,12 @@ typedef struct model_material {
     uint32_t wrap_u, wrap_v; /* VIT_WRAP_* */
     float cutoff;            /* alpha test: texels with alpha * factor < cutoff are holes; 0: opaque */
     float alpha;             /* constant alpha factor */
-    uint64_t triangles;      /* that use it */
+    float normal_scale;      /* of x and y of the normal map, -VIT_MAX_NORMAL_SCALE..VIT_MAX_NORMAL_SCALE; 0: there is none */
+    int normal_image;        /* of it, index in model.images, whose bytes are no sRGB then */
+    uint32_t normal_wrap_u, normal_wrap_v;
+    uint64_t triangles; /* that use it */
 } model_material;
+#define MODEL_HAS_NORMAL_MAP(material) ((material)->normal_scale != 0.0f) /* which has an image */
 
 typedef struct model_camera {
     char name[SCENE_NAME], parent[SCENE_NAME]; /* of its node and the node above, "" if there is none */

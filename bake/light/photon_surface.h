@@ -13,6 +13,7 @@ typedef struct photon_scene {
     const vit_attributes *attributes;
     uint32_t triangle_count;
     const vit_material *materials;
+    const vit_maps *maps; /* a material each; NULL: none of them has any */
     const atlas *atlas;
     float ray_offset, box_pad; /* of vit_scene, metres */
     uint64_t effects;          /* of vit_scene: how textures are filtered, and what shines */
@@ -22,7 +23,7 @@ typedef struct photon_surface {
     vec3 position; /* on the ray, before the surface by ray_offset: surface_before() of kernels/surface.clh */
     vec3 beyond;   /* as far beyond the surface */
     vec3 face;     /* unit geometric normal on that side */
-    vec3 normal;   /* unit interpolated normal on that side */
+    vec3 normal;   /* unit interpolated normal on that side, by the normal map */
     vec3 albedo;
     const vit_material *material;
     bool back; /* the back of the triangle */

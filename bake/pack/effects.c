@@ -76,6 +76,12 @@ void effects_force(const scene *s, vit_scene *c, effects_decided *out) {
         if ((c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) && c->chain == 0)
             c->chain = (uint32_t)s->quality.specular_depth;
     }
+    /* A list may name what needs something that it does not name. */
+#define X(effect, needed)                                                                                                      \
+    if (!(c->effects & VIT_BIT(needed)))                                                                                       \
+        c->effects &= ~VIT_BIT(effect);
+    VIT_EFFECT_NEEDS(X)
+#undef X
     out->forced_on = s->effects_choice == EFFECTS_AUTO ? 0 : c->effects & EFFECTS_NAMED;
     out->forced_off = planned & ~c->effects;
 }
@@ -84,8 +90,10 @@ static bool is_positive(const float v[3]) {
     return v[0] > 0.0f || v[1] > 0.0f || v[2] > 0.0f;
 }
 
-uint64_t effects_of_material(const vit_material *m) {
+uint64_t effects_of_material(const vit_material *m, const vit_maps *maps) {
     uint64_t e = m->texture != VIT_NONE ? VIT_BIT(TEXTURES) : 0;
+    if (maps->normal != VIT_NONE)
+        e |= VIT_BIT(NORMAL_MAPS) | VIT_BIT(TEXTURES) | VIT_BIT(SMOOTH);
     if (m->cutout)
         e |= VIT_BIT(CUTOUT);
     if (is_positive(m->emission))
@@ -135,12 +143,13 @@ static void say_frames(sentence *s, const effects_reached *r, uint32_t by, uint3
 }
 
 /* The materials that call for the effect, those that are reached or those that are not. Returns their number. */
-static int say_materials(sentence *s, uint64_t effect, const model *m, const vit_material *materials,
+static int say_materials(sentence *s, uint64_t effect, const model *m, const effects_looks *looks,
                          const effects_reached *reached, bool which, uint32_t frames) {
     int count = 0;
     for (int i = 0; i < m->material_count; i++) {
         const bool is_reached = reached[i].how & ways(effect);
-        if (m->materials[i].triangles == 0 || !(effects_of_material(&materials[i]) & effect) || is_reached != which)
+        if (m->materials[i].triangles == 0 || !(effects_of_material(&looks->materials[i], &looks->maps[i]) & effect) ||
+            is_reached != which)
             continue;
         if (count++ >= TOLD)
             continue;
@@ -181,22 +190,23 @@ static bool is_settled(uint64_t effect) {
 }
 
 /* o: the record that says so, or -1. */
-static bool is_reached(uint64_t effect, int o, const model *m, const vit_material *materials, const effects_reached *reached) {
+static bool is_reached(uint64_t effect, int o, const model *m, const effects_looks *looks, const effects_reached *reached) {
     if (o >= 0)
         return reached[o].how & ways(effect);
     for (int i = 0; i < m->material_count; i++)
-        if (m->materials[i].triangles > 0 && (effects_of_material(&materials[i]) & effect) && (reached[i].how & ways(effect)))
+        if (m->materials[i].triangles > 0 && (effects_of_material(&looks->materials[i], &looks->maps[i]) & effect) &&
+            (reached[i].how & ways(effect)))
             return true;
     return false;
 }
 
-static void explain(int bit, const vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
+static void explain(int bit, const vit_scene *c, const model *m, const effects_looks *looks, const effects_reached *reached,
                     effects_decided *out) {
     const uint64_t effect = (uint64_t)1 << bit;
     const bool forced_on = out->forced_on & effect, forced_off = out->forced_off & effect;
     /* No texel of a cut-out material is tested where cut-outs are left out. */
     const int o = forced_off && effect == VIT_BIT(CUTOUT) ? -1 : other(effect, m->material_count);
-    const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, o, m, materials, reached);
+    const bool acts = ((c->effects | out->forced_off) & effect) && is_reached(effect, o, m, looks, reached);
     sentence s = {.text = out->reason[bit]};
     if (forced_off && (effect & EFFECTS_NAMED) && (acts || !is_settled(effect)))
         out->missed |= effect;
@@ -211,23 +221,23 @@ static void explain(int bit, const vit_scene *c, const model *m, const vit_mater
     if (out->dropped & effect) {
         char names[EFFECTS_REASON] = "";
         sentence of = {.text = names};
-        if (say_materials(&of, effect, m, materials, reached, false, c->frames) > 0)
+        if (say_materials(&of, effect, m, looks, reached, false, c->frames) > 0)
             say(&s, ": %s", names);
     } else if (is_settled(effect) && acts && o >= 0) {
         say(&s, "%s, ", what_is_other(effect));
         say_frames(&s, &reached[o], ways(effect), c->frames);
     } else if (!((effect == VIT_BIT(AREA_LIGHTS) || (is_settled(effect) && acts)) &&
-                 say_materials(&s, effect, m, materials, reached, true, c->frames) > 0))
+                 say_materials(&s, effect, m, looks, reached, true, c->frames) > 0))
         say(&s, "%s", forced_on && is_settled(effect) ? "nothing on the path calls for it" : called_when[bit]);
 }
 
-void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
+void effects_settle(vit_scene *c, const model *m, const effects_looks *looks, const effects_reached *reached,
                     effects_decided *out) {
     out->dropped = out->missed = 0;
     for (int bit = 0; bit < 64; bit++) {
         const uint64_t effect = (uint64_t)1 << bit;
         if ((c->effects & effect) && is_settled(effect) && !(out->forced_on & effect) &&
-            !is_reached(effect, other(effect, m->material_count), m, materials, reached))
+            !is_reached(effect, other(effect, m->material_count), m, looks, reached))
             out->dropped |= effect;
     }
     const uint64_t before = c->effects;
@@ -235,5 +245,5 @@ void effects_settle(vit_scene *c, const model *m, const vit_material *materials,
     out->dropped = before & ~c->effects;
     for (int bit = 0; bit < 64; bit++)
         if (effects_name(bit))
-            explain(bit, c, m, materials, reached, out);
+            explain(bit, c, m, looks, reached, out);
 }

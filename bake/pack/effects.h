@@ -36,14 +36,20 @@ typedef struct effects_decided {
 /* Applies the scene's `effects` to what the planner asks for; the fields of META that go with an effect follow (effects_drop).
  */
 void effects_force(const scene *s, vit_scene *c, effects_decided *out);
-/* Drops what is never reached, but nothing that was forced on, and writes the reasons. materials: the pack's records. */
-void effects_settle(vit_scene *c, const model *m, const vit_material *materials, const effects_reached *reached,
+/* The pack's records of each of the model's materials. */
+typedef struct effects_looks {
+    const vit_material *materials;
+    const vit_maps *maps;
+} effects_looks;
+
+/* Drops what is never reached, but nothing that was forced on, and writes the reasons. */
+void effects_settle(vit_scene *c, const model *m, const effects_looks *looks, const effects_reached *reached,
                     effects_decided *out);
 
 /* Takes effects, those that need them and the counts that go with them out of META; indirect light with what makes it. */
 void effects_drop(vit_scene *c, uint64_t effects);
 
 /* What a material calls for where it is met: also CAUSTICS, which needs photons, and AREA_LIGHTS. */
-uint64_t effects_of_material(const vit_material *m);
+uint64_t effects_of_material(const vit_material *m, const vit_maps *maps);
 
 #endif

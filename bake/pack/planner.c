@@ -6,6 +6,7 @@
 #include "common/strict_math.h"
 #include "radiosity/transport.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,6 +108,15 @@ static void plan_materials(const model *m, const atlas *a, plan *p) {
     }
 }
 
+/* What is left out by the quality is not there. */
+static void plan_maps(const scene *s, const model *m, const atlas *a, plan *p) {
+    for (int i = 0; i < m->material_count; i++) {
+        const bool bent = s->quality.normal_maps && a->material_normal && a->material_normal[i] != VIT_NONE;
+        p->maps[i] = (vit_maps){.normal = bent ? a->material_normal[i] : VIT_NONE,
+                                .normal_scale = bent ? m->materials[i].normal_scale : 1.0f};
+    }
+}
+
 static uint64_t effects_of_lights(const scene *s, const tracks *t) {
     uint64_t e = t->light_count > 0 ? VIT_BIT(LIGHTS) : 0;
     for (size_t i = 0; i < (size_t)s->frames * t->light_count; i++) {
@@ -126,7 +136,7 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
     uint64_t e = 0;
     for (int i = 0; i < m->material_count; i++)
         if (m->materials[i].triangles > 0)
-            e |= effects_of_material(&p->materials[i]) &
+            e |= effects_of_material(&p->materials[i], &p->maps[i]) &
                  ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
     return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
 }
@@ -313,6 +323,11 @@ static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
         c->effects |= VIT_BIT(DARK_SIDES);
     effects_force(s, c, &p->effects);
     p->lightmap = s->quality.lightmap != LIGHTMAP_RAYS && c->effects & (VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT));
+    if (p->lightmap && s->quality.lightmap == LIGHTMAP_AUTO && c->effects & VIT_BIT(NORMAL_MAPS) &&
+        c->effects & VIT_BIT(AREA_LIGHTS)) { /* the sky's light comes from everywhere, and so it does less harm there */
+        p->lightmap = false;
+        (void)snprintf(p->lightmap_why, sizeof p->lightmap_why, "normal maps hardly show in baked light of area lights");
+    }
     p->area_paths = c->effects & VIT_BIT(AREA_LIGHTS) ? p->area_paths : 0;
     p->sky_paths = c->effects & VIT_BIT(SKY_LIGHT) ? p->sky_paths : 0;
     if (!has_paths(in->tracks, p)) /* its sources were left out */
@@ -338,11 +353,13 @@ vit_status plan_make(const plan_input *in, plan *out, vit_text *why) {
     memset(out, 0, sizeof *out);
     out->materials = calloc((size_t)in->model->material_count, sizeof *out->materials);
     out->baked_paths = calloc(in->tracks->light_count + 1u, sizeof *out->baked_paths);
-    if (!out->materials || !out->baked_paths) {
+    out->maps = calloc((size_t)in->model->material_count, sizeof *out->maps);
+    if (!out->materials || !out->maps || !out->baked_paths) {
         plan_free(out);
         return bake_fail(why, VIT_FAILED, "out of memory");
     }
     plan_materials(in->model, in->atlas, out);
+    plan_maps(in->scene, in->model, in->atlas, out);
     plan_constants(in, &out->scene);
     vit_status status = plan_lights(in, out, why);
     if (status == VIT_OK)
@@ -377,6 +394,7 @@ bool plan_leaves_area_out(const scene_quality *q) {
 
 void plan_free(plan *p) {
     free(p->materials);
+    free(p->maps);
     free(p->baked_paths);
     area_lights_free(&p->area);
     memset(p, 0, sizeof *p);

@@ -17,6 +17,7 @@
 typedef struct plan {
     vit_scene scene;                 /* META but for slices and bounds, which bounds.c measures */
     vit_material *materials;         /* model.material_count records */
+    vit_maps *maps;                  /* the same */
     uint32_t *baked_paths;           /* a light: paths to bake (still lights), 0 for the others */
     area_lights area;                /* area lights: of these materials, of the geometry and atlas that the plan was made for */
     uint32_t area_paths, sky_paths;  /* of all area lights and of the sky, to bake: they are still */

@@ -20,6 +20,7 @@ void stages_point(bake *b) {
                  [VIT_SECTION_ATTR] = out->geometry->attributes,
                  [VIT_SECTION_BVHN] = out->bvh->nodes,
                  [VIT_SECTION_MATL] = out->plan.materials,
+                 [VIT_SECTION_MAPS] = out->plan.maps,
                  [VIT_SECTION_TEXR] = p->atlas.textures,
                  [VIT_SECTION_MIPS] = p->atlas.mips,
                  [VIT_SECTION_ATLS] = p->atlas.texels,
@@ -111,7 +112,7 @@ vit_status stage_bounds(bake *b, vit_text *why) {
     for (uint32_t i = 0; i < s->materials && status == VIT_OK; i++)
         reached[i].how |= out->met && out->met[i] ? EFFECTS_REACHED_BAKED : 0;
     if (status == VIT_OK)
-        effects_settle(s, out->model, out->plan.materials, reached, &out->plan.effects);
+        effects_settle(s, out->model, &(effects_looks){out->plan.materials, out->plan.maps}, reached, &out->plan.effects);
     if (status == VIT_OK && is_live)
         status = keep_looked_up(b, why);
     free(reached);

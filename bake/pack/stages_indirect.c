@@ -34,6 +34,7 @@ photon_scene stages_scene(const bake *b) {
                           .attributes = out->geometry->attributes,
                           .triangle_count = out->model->triangles,
                           .materials = out->plan.materials,
+                          .maps = VIT_HAS_MAPS(out->plan.scene.effects) ? out->plan.maps : NULL,
                           .atlas = &b->p->atlas,
                           .ray_offset = out->geometry->ray_offset,
                           .box_pad = out->plan.scene.box_pad,

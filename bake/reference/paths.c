@@ -59,6 +59,7 @@ bool paths_open(const reference_input *in, unsigned threads, path_scene *out) {
                                 .attributes = data[VIT_SECTION_ATTR],
                                 .triangle_count = meta->triangles,
                                 .materials = data[VIT_SECTION_MATL],
+                                .maps = VIT_HAS_MAPS(meta->effects) ? data[VIT_SECTION_MAPS] : NULL,
                                 .atlas = &out->atlas,
                                 .ray_offset = meta->ray_offset,
                                 .box_pad = meta->box_pad};

@@ -17,7 +17,7 @@
 #include <stdbool.h>
 
 typedef struct reference_input {
-    const pack_sections *sections; /* META, CAMS, LITE, GEOM, ATTR, MATL, TEXR, MIPS, ATLS are read */
+    const pack_sections *sections; /* META, CAMS, LITE, GEOM, ATTR, MATL, MAPS, TEXR, MIPS, ATLS are read */
     const bool
         *direct_only; /* a light: it gives no indirect light (`photons = false` in the scene file), which records do not tell:
                        * vit_light.path_count is 0 for baked lights too. META.lights flags; NULL: all lights give it */

@@ -91,6 +91,7 @@ uint64_t state_key(const reference_input *in) {
         vit_hash(data[VIT_SECTION_GEOM], s->triangles * sizeof(vit_triangle)),
         vit_hash(data[VIT_SECTION_ATTR], s->triangles * sizeof(vit_attributes)),
         hash_materials(data[VIT_SECTION_MATL], s->materials),
+        VIT_HAS_MAPS(s->effects) ? vit_hash(data[VIT_SECTION_MAPS], s->materials * sizeof(vit_maps)) : 0,
         vit_hash(data[VIT_SECTION_TEXR], s->textures * sizeof(vit_texture)),
         vit_hash(data[VIT_SECTION_MIPS], s->mips * sizeof(vit_mip)),
         vit_hash(data[VIT_SECTION_ATLS], s->texels * sizeof(vit_u32)),

@@ -59,13 +59,14 @@ enum { LIGHT_UNITS_AUTO, LIGHT_UNITS_PHOTOMETRIC, LIGHT_UNITS_RADIOMETRIC };
 typedef struct scene_material {
     char name[SCENE_NAME];
     bool has_color, has_texture, has_emission, has_cutoff, has_kind, has_specular, has_exponent, has_roughness, has_ior,
-        has_absorption, has_area_light;
+        has_absorption, has_area_light, has_normal_map;
     double color[3], emission[3], cutoff;
     int kind;                                         /* VIT_MATTE, ... */
     double specular[3], exponent, ior, absorption[3]; /* as vit_material */
     double roughness;                                 /* root of vit_material.alpha */
     bool area_light;                                  /* what it emits lights others */
     char texture[SCENE_PATH];                         /* resolved; "" removes the texture */
+    char normal_map[SCENE_PATH];                      /* likewise */
     int line;
 } scene_material;
 

@@ -98,6 +98,7 @@ enum {
     MATERIAL_NAME,
     MATERIAL_COLOR,
     MATERIAL_TEXTURE,
+    MATERIAL_NORMAL_MAP,
     MATERIAL_EMISSION,
     MATERIAL_CUTOFF,
     MATERIAL_KIND,
@@ -112,6 +113,7 @@ static const config_field material_fields[] = {
     [MATERIAL_NAME] = {"name", FIELD_TEXT, offsetof(scene_material, name), NULL},
     [MATERIAL_COLOR] = {"color", FIELD_VECTOR, offsetof(scene_material, color), "[0, 1]"},
     [MATERIAL_TEXTURE] = {"texture", FIELD_PATH, offsetof(scene_material, texture), NULL},
+    [MATERIAL_NORMAL_MAP] = {"normal_map", FIELD_PATH, offsetof(scene_material, normal_map), NULL},
     [MATERIAL_EMISSION] = {"emission", FIELD_VECTOR, offsetof(scene_material, emission), RADIOMETRIC},
     [MATERIAL_CUTOFF] = {"cutoff", FIELD_NUMBER, offsetof(scene_material, cutoff), "[0, 1]"},
     [MATERIAL_KIND] = {"kind", FIELD_WORD, offsetof(scene_material, kind), SCENE_MATERIAL_KINDS},
@@ -162,6 +164,7 @@ bool reader_materials(reader *r, const config_setting_t *root) {
                 return fields_fail(&r->at, group, "'%s' was already given as material %d", material->name, k + 1);
         material->has_color = seen & FIELD_BIT(MATERIAL_COLOR);
         material->has_texture = seen & FIELD_BIT(MATERIAL_TEXTURE);
+        material->has_normal_map = seen & FIELD_BIT(MATERIAL_NORMAL_MAP);
         material->has_emission = seen & FIELD_BIT(MATERIAL_EMISSION);
         if (!check_material(&r->at, group, material, seen))
             return false;

@@ -44,6 +44,7 @@ enum {
       "{ name = \"left\"; color = [0.4, 0.2, 0.1]; specular = [0.4, 0.4, 0.4]; roughness = 0.3; },"                            \
       "{ name = \"right\"; color = [0.1, 0.2, 0.3]; specular = [0.5, 0.5, 0.5]; roughness = 0.6; }",                           \
       "", "")                                                                                                                  \
+    X(NORMAL_MAPS, LAMP, MATT ", { name = \"floor\"; normal_map = \"wood.png\"; }", "", "")                                    \
     X(MIRROR, LAMP, "{ name = \"left\"; kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }", "", "")                             \
     X(GLASS, LAMP, "{ name = \"right\"; kind = \"glass\"; ior = 1.5; absorption = [0.6, 0.3, 0.1]; }", "",                     \
       "caustics = false;")                                                                                                     \

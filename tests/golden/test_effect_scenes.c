@@ -14,7 +14,7 @@
 #include "open_pack.h"
 #include "pack_sections.h"
 
-enum { FRAMES = EFFECT_COST_FRAMES };
+enum { FRAMES = EFFECT_COST_FRAMES, MATERIALS = 3 };
 
 /* A floor, a back wall, the thing: a block on the floor, and a vault under the floor, closed, with a second thing in it. */
 static const char stage[] =
@@ -56,6 +56,7 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(EMISSION, LAMP, "emission = [0.5, 0.4, 0.3]; area_light = false;", "", "")                                               \
     X(SPECULAR, LAMP, "specular = [0.3, 0.3, 0.3]; exponent = 40.0;", "", "")                                                  \
     X(GGX, LAMP, "specular = [0.3, 0.3, 0.3]; roughness = 0.3;", "", "")                                                       \
+    X(NORMAL_MAPS, LAMP, "normal_map = \"holes.tga\";", "", "")                                                                \
     X(MIRROR, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                  \
     X(GLASS, LAMP, "kind = \"glass\"; ior = 1.5; absorption = [0.1, 0.2, 0.3];", "", "")                                       \
     X(CAUSTICS, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                \
@@ -166,6 +167,7 @@ static played play(const void *bytes, size_t size) {
 static played play_idle(const void *bytes, uint64_t effect) {
     static vit_light_sample dark[2 * VIT_PATTERNS];
     static vit_sky_texel texels[9];
+    static vit_maps no_maps[MATERIALS];
     static const vit_cache_cell no_cell = {.key = VIT_CACHE_EMPTY};
     pack_sections sections = pack_sections_of(bytes);
     vit_scene s = *(const vit_scene *)sections.data[VIT_SECTION_META];
@@ -173,6 +175,10 @@ static played play_idle(const void *bytes, uint64_t effect) {
     void *idle = NULL;
     size_t size;
     s.effects |= effect | (effect == VIT_BIT(GGX) ? VIT_BIT(SPECULAR) : 0);
+    s.effects |= effect == VIT_BIT(NORMAL_MAPS) ? VIT_BIT(TEXTURES) | VIT_BIT(SMOOTH) : 0;
+    for (int i = 0; i < MATERIALS; i++)
+        no_maps[i] = (vit_maps){.normal = VIT_NONE, .normal_scale = 1};
+    sections.data[VIT_SECTION_MAPS] = no_maps;
     if (effect & (VIT_BIT(MIRROR) | VIT_BIT(GLASS)))
         s.chain = 8;
     if (effect == VIT_BIT(ANTIALIAS)) {
@@ -311,7 +317,7 @@ static void each_is_called_for_by_its_scene_and_changes_it(void **state) {
 static void what_is_never_reached_is_not_called_for(void **state) {
     scene_lab *l = *state;
     static const uint64_t of_surfaces = VIT_BIT(TEXTURES) | VIT_BIT(EMISSION) | VIT_BIT(SPECULAR) | VIT_BIT(GGX) |
-                                        VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
+                                        VIT_BIT(NORMAL_MAPS) | VIT_BIT(MIRROR) | VIT_BIT(GLASS) | VIT_BIT(CAUSTICS);
     size_t size;
     bake(l, LAMP, "", "", "", "", false);
     void *bytes = load(l, &size);

@@ -44,8 +44,9 @@ static fixture make(uint32_t triangles) {
     f.m.uv = calloc(6 * (size_t)triangles, sizeof(float));
     f.m.index = calloc(3 * (size_t)triangles, sizeof(uint32_t));
     f.m.material = calloc(triangles, sizeof(uint32_t));
+    f.m.materials = calloc(triangles, sizeof(model_material));
     f.b.order = calloc(triangles, sizeof(uint32_t));
-    assert_true(f.m.position && f.m.normal && f.m.uv && f.m.index && f.m.material && f.b.order);
+    assert_true(f.m.position && f.m.normal && f.m.uv && f.m.index && f.m.material && f.m.materials && f.b.order);
     for (uint32_t i = 0; i < triangles; i++) {
         f.b.order[i] = triangles - 1 - i;
         f.m.material[i] = i;
@@ -68,6 +69,7 @@ static void drop(fixture *f) {
     free(f->m.uv);
     free(f->m.index);
     free(f->m.material);
+    free(f->m.materials);
     free(f->b.order);
 }
 
@@ -108,7 +110,7 @@ static void records_follow_the_leaf_order_with_exact_vertices(void **state) {
         assert_memory_equal(g.triangles[i].v2, f.m.position + 9 * t + 6, 12);
         assert_int_equal(g.attributes[i].material, t | VIT_TRIANGLE_SMOOTH); /* its normals are z, and not its own */
         assert_memory_equal(g.attributes[i].uv, f.m.uv + 6 * t, 24);
-        assert_int_equal(g.attributes[i].pad[0] | g.attributes[i].pad[1], 0);
+        assert_int_equal(g.attributes[i].tangent[0] | g.attributes[i].tangent[1], 0);
     }
     geometry_free(&g);
     drop(&f);

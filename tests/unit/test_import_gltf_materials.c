@@ -308,12 +308,36 @@ static void a_transform_says_which_set_of_coordinates(void **state) {
     model_free(&m);
 }
 
+static void a_normal_map_is_taken_with_its_scale(void **state) {
+    static const struct {
+        const char *map;
+        float scale;
+    } cases[] = {{"{\"index\":0}", 1.0f},
+                 {"{\"index\":0,\"scale\":-0.5}", -0.5f},
+                 {"{\"index\":0,\"scale\":1e9}", VIT_MAX_NORMAL_SCALE},
+                 {"{\"index\":0,\"scale\":0}", 0.0f},
+                 {"{}", 0.0f}};
+    (void)state;
+    put_texture();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        model m;
+        char material[256];
+        (void)snprintf(material, sizeof material, PBR("\"baseColorTexture\":{\"index\":0}") ",\"normalTexture\":%s",
+                       cases[i].map);
+        import_gltf(material, IMAGE, "", &m);
+        assert_true(m.materials[0].normal_scale == cases[i].scale);
+        assert_true(m.image_count == 1 && m.materials[0].normal_image == 0); /* the same picture, once */
+        model_free(&m);
+    }
+}
+
 /* A warning, and an error if strict. */
 static void what_is_not_done_is_said(void **state) {
     static const struct {
         const char *material, *more, *what;
     } cases[] = {{"\"extensions\":{\"KHR_materials_unlit\":{}}", "", "unlit materials are lit like any other (material 'a'"},
-                 {"\"normalTexture\":{\"index\":0}", IMAGE, "normal maps are left out (material 'a'"},
+                 {PBR("\"baseColorTexture\":{\"index\":0,\"texCoord\":1}") ",\"normalTexture\":{\"index\":0}", IMAGE,
+                  "normal maps with other coordinates than the colour are left out (material 'a'"},
                  {"\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}", IMAGE, "emissive textures are not supported"},
                  {"\"doubleSided\":true", ",\"extensionsUsed\":[\"KHR_materials_clearcoat\"]",
                   "extension 'KHR_materials_clearcoat' is used and not read"},
@@ -370,6 +394,7 @@ int main(void) {
         cmocka_unit_test(a_black_factor_is_black),
         cmocka_unit_test(a_cutoff_above_1_cuts_all_of_it_away),
         cmocka_unit_test(a_transform_says_which_set_of_coordinates),
+        cmocka_unit_test(a_normal_map_is_taken_with_its_scale),
         cmocka_unit_test(what_is_not_done_is_said),
         cmocka_unit_test(the_dragon_is_of_amber),
     };

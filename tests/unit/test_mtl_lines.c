@@ -124,8 +124,8 @@ static void roughness_and_metalness_are_gltfs(void **state) {
 
 static void what_is_not_done_is_said(void **state) {
     static const char *const rows[][2] = {
-        {"bump -bm 2 a.tga", "bump, normal and displacement maps are left out (material 'm'"},
-        {"norm a.tga", "bump, normal"},
+        {"bump -bm 2 a.tga", "bump and displacement maps are left out (material 'm'"},
+        {"map_Kd a.tga\nnorm -s 2 2 2 a.tga", "normal maps that lie otherwise than the colour are left out"},
         {"refl -type sphere a.tga", "reflection maps are left out"},
         {"decal a.tga", "decals are left out"},
         {"map_Ns a.tga", "maps of Ns"},

@@ -10,7 +10,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 11", im->header->version = 11)                                                           \
+    X(header, newer_version, "version 12", im->header->version = 12)                                                           \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -148,7 +148,7 @@
     X(META, paths_without_traced, "TRACED", EFFECTS(0, BIT(TRACED)))                                                           \
     X(META, lights_without_their_effect, "SPOT without LIGHTS", EFFECTS(0, BIT(LIGHTS)))                                       \
     X(META, effect_without_lights, "0 lights", im->scene->lights = 0)                                                          \
-    X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu | BIT(INDIRECT)),                                    \
+    X(META, lights_without_any_effect, "2 lights", EFFECTS(0, 0xffffffffu | BIT(INDIRECT) | BIT(NORMAL_MAPS)),                 \
       im->scene->paths = im->scene->baked = 0, vit_pack_derive(im->scene, NULL))                                               \
     X(META, baked_photons_without_photons, "baked photons without", EFFECTS(0, vit_effects_upon(BIT(INDIRECT))),               \
       im->scene->paths = im->scene->cells = 0, vit_pack_derive(im->scene, NULL))                                               \
@@ -216,7 +216,6 @@
     X(ATTR, unknown_flag, "unknown flags", im->attributes[0].material |= 0x10000000)                                           \
     X(ATTR, uv_is_nan, "triangle 11: a texture coordinate", im->attributes[11].uv[2][1] = NAN)                                 \
     X(ATTR, first_uv_is_infinite, "triangle 1: a texture coordinate", im->attributes[1].uv[0][0] = INFINITY)                   \
-    X(ATTR, padding_in_use, "padding", im->attributes[0].pad[1] = 1)                                                           \
     X(MATL, albedo_above_1, "material 1: albedo", im->materials[1].albedo[2] = 1.5f)                                           \
     X(MATL, albedo_is_nan, "material 0: albedo", im->materials[0].albedo[0] = NAN)                                             \
     X(MATL, negative_emission, "emission", im->materials[0].emission[0] = -1)                                                  \
@@ -224,6 +223,11 @@
     X(MATL, unknown_texture, "texture 1 of 1", im->materials[1].texture = 1)                                                   \
     X(MATL, cutout_of_2, "cutout must be 0 or 1", im->materials[1].cutout = 2)                                                 \
     X(MATL, cut_out_by_no_texture, "cut out by no texture", im->materials[0].cutout = 1)                                       \
+    X(MAPS, map_of_no_texture, "material 0: texture 1 of 1", im->maps[0].normal = 1)                                           \
+    X(MAPS, scale_of_nan, "material 1: normal_scale", im->maps[1].normal_scale = NAN)                                          \
+    X(MAPS, scale_too_large, "normal_scale must be in -1000..1000", im->maps[0].normal_scale = 1001)                           \
+    X(MAPS, padding_in_use, "material 1: padding", im->maps[1].pad[0] = 1)                                                     \
+    X(META, normal_maps_without_textures, "effect NORMAL_MAPS without TEXTURES", EFFECTS(0, BIT(TEXTURES)))                    \
     X(TEXR, no_mip, "no mip level", im->textures[0].mip_count = 0)                                                             \
     X(TEXR, mips_beyond_the_last, "beyond the 3", im->textures[0].first_mip = 1)                                               \
     X(TEXR, mip_sum_that_wraps, "beyond the 3", im->textures[0].first_mip = 0xffffffff)                                        \

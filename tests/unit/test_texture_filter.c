@@ -18,7 +18,7 @@ static const char kernels[] =
     "    r.t0 = r.t1 = L_LOAD(in + n + first);\n"
     "    r.s1 = r.s0 + 1.0f;\n"
     "    r.t2 = r.t0 + 1.0f;\n"
-    "    lv3_store_planes(surface_texture(texture, mips, texels, &r, (li)-1, one, zero, zero, L_LOAD(in + 2 * n + first), "
+    "    lv3_store_planes(surface_texture(texture, mips, texels, 0, &r, (li)-1, one, zero, zero, L_LOAD(in + 2 * n + first), "
     "one), out, n, first);\n"
     "}\n";
 

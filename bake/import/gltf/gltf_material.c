@@ -1,5 +1,6 @@
 /* Materials (3.9): colour, emission, alpha; gltf_shine.c has the rest. */
 #include "import/gltf/gltf_file.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -67,13 +68,37 @@ static bool read_emission(gltf_file *g, material_use *use, const json_t *materia
     return true;
 }
 
+/* A material has one set of texture coordinates. */
+static bool same_coordinates(const material_use *use, const gltf_texture *t) {
+    return use->uv_set == t->uv_set && use->has_transform == t->has_transform &&
+           (!t->has_transform || memcmp(use->uv, t->uv, sizeof use->uv) == 0);
+}
+
+/* Without a colour texture the coordinates are the normal map's. */
+static bool read_normal_map(gltf_file *g, material_use *use, const json_t *material) {
+    const json_t *info = json_object_get(material, "normalTexture");
+    const double scale = gltf_number(info, "scale", 1.0);
+    gltf_texture t;
+    if (!info || scale == 0.0 || !gltf_find_texture(g, info, &t))
+        return true;
+    if (!use->image[0]) {
+        use->uv_set = t.uv_set;
+        use->has_transform = t.has_transform;
+        memcpy(use->uv, t.uv, sizeof use->uv);
+    } else if (!same_coordinates(use, &t))
+        return gltf_remark_once(g, GLTF_SAID_NORMALS, "normal maps with other coordinates than the colour are left out",
+                                use->m.name);
+    memcpy(use->normal, t.image, sizeof use->normal);
+    use->m.normal_scale = fminf(fmaxf((float)scale, -VIT_MAX_NORMAL_SCALE), VIT_MAX_NORMAL_SCALE);
+    use->m.normal_wrap_u = t.wrap_u;
+    use->m.normal_wrap_v = t.wrap_v;
+    return true;
+}
+
 /* What of it is not done, once a file. */
 static bool remark(gltf_file *g, const material_use *use, const json_t *material) {
-    if (gltf_extension(material, "KHR_materials_unlit") &&
-        !gltf_remark_once(g, GLTF_SAID_UNLIT, "unlit materials are lit like any other", use->m.name))
-        return false;
-    return !json_object_get(material, "normalTexture") ||
-           gltf_remark_once(g, GLTF_SAID_NORMALS, "normal maps are left out", use->m.name);
+    return !gltf_extension(material, "KHR_materials_unlit") ||
+           gltf_remark_once(g, GLTF_SAID_UNLIT, "unlit materials are lit like any other", use->m.name);
 }
 
 bool gltf_material(importer *im, material_use *use) {
@@ -88,5 +113,6 @@ bool gltf_material(importer *im, material_use *use) {
     for (int i = 0; i < 3; i++)
         use->m.albedo[i] = import_clamp(color[i] * use->tint[i], VIT_MAX_ALBEDO);
     read_alpha(use, material);
-    return read_emission(g, use, material) && remark(g, use, material) && gltf_shine(g, use, material);
+    return read_normal_map(g, use, material) && read_emission(g, use, material) && remark(g, use, material) &&
+           gltf_shine(g, use, material);
 }

@@ -15,14 +15,35 @@ static bool same_name(const mtl_map *a, const mtl_map *b) {
 }
 
 /* Its v runs upwards, and ours down: 1 - (s (1 - v) + o). */
-static void read_texture(material_use *use, const mtl_map *map) {
+static void read_coordinates(material_use *use, const mtl_map *map) {
     const double su = (double)map->scale[0], sv = (double)map->scale[1], ou = (double)map->offset[0],
                  ov = (double)map->offset[1];
-    mtl_name_of(map->name, use->image);
-    use->m.wrap_u = use->m.wrap_v = map->clamp ? VIT_WRAP_CLAMP : VIT_WRAP_REPEAT;
     use->has_transform = su != 1.0 || sv != 1.0 || ou != 0.0 || ov != 0.0;
     const double uv[6] = {su, 0.0, ou, 0.0, sv, 1.0 - sv - ov};
     memcpy(use->uv, uv, sizeof uv);
+}
+
+static void read_texture(material_use *use, const mtl_map *map) {
+    mtl_name_of(map->name, use->image);
+    use->m.wrap_u = use->m.wrap_v = map->clamp ? VIT_WRAP_CLAMP : VIT_WRAP_REPEAT;
+    read_coordinates(use, map);
+}
+
+/* A material has one set of coordinates. What it says of `-bm` is brightness, which directions have none of. */
+static void read_normal_map(material_use *use, mtl *m) {
+    const mtl_map *map = &m->normal_map, *color = &m->color_map;
+    if (obj_is_empty(map->name))
+        return;
+    if (use->image[0] && (memcmp(map->scale, color->scale, sizeof map->scale) != 0 ||
+                          memcmp(map->offset, color->offset, sizeof map->offset) != 0)) {
+        m->remarks |= 1u << MTL_NORMAL;
+        return;
+    }
+    mtl_name_of(map->name, use->normal);
+    use->m.normal_scale = 1.0f;
+    use->m.normal_wrap_u = use->m.normal_wrap_v = map->clamp ? VIT_WRAP_CLAMP : VIT_WRAP_REPEAT;
+    if (!use->image[0])
+        read_coordinates(use, map);
 }
 
 /* Diffuse reflectance, before mtl_shine() has told what of it is not diffuse. Colours of vertices are sRGB, as Blender and
@@ -92,12 +113,13 @@ static bool remark(obj_file *o, const material_use *use, const mtl *m) {
 bool mtl_material(importer *im, material_use *use) {
     obj_file *o = im->reader;
     static const char unnamed[] = "DefaultMaterial";
-    const mtl *m = &o->mtl[use->source];
+    mtl *m = &o->mtl[use->source];
     const obj_text name =
         use->source < o->materials.count ? o->materials.name[use->source] : (obj_text){unnamed, unnamed + sizeof unnamed - 1};
     (void)snprintf(use->m.name, sizeof use->m.name, "%.*s", obj_size(name, SCENE_NAME - 1), name.at);
     if (!obj_is_empty(m->color_map.name))
         read_texture(use, &m->color_map);
+    read_normal_map(use, m);
     read_color(im, use, m);
     return read_emission(im, use, m) && read_alpha(im, use, m) && remark(o, use, m) && mtl_shine(im, use, m);
 }

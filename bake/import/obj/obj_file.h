@@ -36,7 +36,8 @@ typedef struct mtl_map {
 
 /* What MTL says and is not done, told of once a file: X(name, words). */
 #define MTL_NOT_DONE(X)                                                                                                        \
-    X(BUMP, "bump, normal and displacement maps are left out")                                                                 \
+    X(BUMP, "bump and displacement maps are left out")                                                                         \
+    X(NORMAL, "normal maps that lie otherwise than the colour are left out")                                                   \
     X(REFLECTION, "reflection maps are left out")                                                                              \
     X(DECAL, "decals are left out")                                                                                            \
     X(MAPPED_NUMBER, "maps of Ns, Ni, Tr, Tf, Ps and Pc are left out")                                                         \
@@ -61,7 +62,7 @@ typedef struct mtl {
     float illum;
     float sheen, coat; /* Ps and Pc: only whether there is any */
     unsigned has;      /* bits of mtl_said */
-    mtl_map color_map, specular_map, emission_map, opacity_map, roughness_map, metallic_map;
+    mtl_map color_map, specular_map, emission_map, opacity_map, roughness_map, metallic_map, normal_map;
     unsigned remarks; /* bits of mtl_remark */
     bool defined;     /* a material file has it */
 } mtl;

@@ -137,6 +137,7 @@ static void check_pack(bake *k) {
                                              [VIT_SECTION_ATTR] = k->g.attributes,
                                              [VIT_SECTION_BVHN] = k->b.nodes,
                                              [VIT_SECTION_MATL] = k->p.materials,
+                                             [VIT_SECTION_MAPS] = k->p.maps,
                                              [VIT_SECTION_TEXR] = k->a.textures,
                                              [VIT_SECTION_MIPS] = k->a.mips,
                                              [VIT_SECTION_ATLS] = k->a.texels,

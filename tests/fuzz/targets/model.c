@@ -28,6 +28,8 @@ static void check_materials(const model *m) {
         for (int c = 0; c < 3; c++)
             FUZZ_HOLDS(k->albedo[c] >= 0.0f && k->albedo[c] + k->specular[c] <= 1.0f + 1e-6f && k->emission[c] >= 0.0f);
         FUZZ_HOLDS(k->image >= -1 && k->image < m->image_count && k->cutoff >= 0.0f && k->cutoff <= 1.0f);
+        FUZZ_HOLDS(!MODEL_HAS_NORMAL_MAP(k) || (k->normal_image >= 0 && k->normal_image < m->image_count));
+        FUZZ_HOLDS(fabsf(k->normal_scale) <= VIT_MAX_NORMAL_SCALE && k->normal_wrap_u <= VIT_WRAP_MIRROR);
         FUZZ_HOLDS(k->ior >= VIT_MIN_IOR && k->ior <= VIT_MAX_IOR && k->exponent >= 1.0f && k->exponent <= VIT_MAX_EXPONENT);
         FUZZ_HOLDS(k->lobe_alpha == 0.0f || (k->lobe_alpha >= VIT_MIN_ALPHA && k->lobe_alpha <= 1.0f));
         uses += k->triangles;

@@ -207,17 +207,23 @@ static void follow_mip(const vit_pack *p, const vit_mip *m) {
     }
 }
 
-static void follow_material(const vit_pack *p, uint32_t index) {
-    const vit_material *materials = p->section[VIT_SECTION_MATL];
+static void follow_texture(const vit_pack *p, vit_u32 texture) {
     const vit_texture *textures = p->section[VIT_SECTION_TEXR];
     const vit_mip *mips = p->section[VIT_SECTION_MIPS];
-    const vit_u32 texture = materials[index].texture;
-    FUZZ_HOLDS(index < p->scene->materials);
     if (texture == VIT_NONE)
         return;
     FUZZ_HOLDS(texture < p->scene->textures && textures[texture].mip_count > 0);
     for (vit_u32 i = 0; i < textures[texture].mip_count; i++)
         follow_mip(p, &mips[textures[texture].first_mip + i]);
+}
+
+static void follow_material(const vit_pack *p, uint32_t index) {
+    const vit_material *materials = p->section[VIT_SECTION_MATL];
+    const vit_maps *maps = p->section[VIT_SECTION_MAPS];
+    FUZZ_HOLDS(index < p->scene->materials);
+    follow_texture(p, materials[index].texture);
+    if (VIT_HAS_MAPS(p->scene->effects))
+        follow_texture(p, maps[index].normal);
 }
 
 static void follow_cells(const vit_pack *p, uint32_t triangle) {
