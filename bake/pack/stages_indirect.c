@@ -54,6 +54,9 @@ static vit_status find(const bake *b, const photon_scene *s, const baked_input *
     const vit_status status = baked_find(&in, &b->out->baked, why);
     b->out->baked.seconds = progress_now() - began;
     photon_rays_close(&rays);
+    if (status == VIT_OK && b->out->baked.more_rays > 1)
+        progress_line(p->progress, false, "light gets about by small gaps: %u rays of each receiver, not receiver_rays = %u",
+                      b->out->baked.more_rays * in.receiver_rays, in.receiver_rays);
     return status;
 }
 

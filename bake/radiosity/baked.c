@@ -13,7 +13,13 @@
 #define CELLS_MOST 65536u
 #define BOUNCE_RAYS 4u /* a receiver has so many for one of a cell, about, */
 #define BOUNCE_LEAST 4u
-#define LOOKS 0.75      /* and for so many looks at lights of a cell */
+#define LOOKS 0.75       /* and for so many looks at lights of a cell */
+#define NOISY 0.5        /* of the light there, that a receiver's deviation is at the first look by USUAL_RAYS, from which on */
+#define NOISY_SHARE 0.05 /* of the receivers make the scene one that light gets about in by small gaps, */
+#define MORE_RAYS 4u     /* and rays so many times as many, where receivers at the first look times that are at most */
+#define MORE_MOST 49152u
+#define DIM 0.1 /* of the logarithmic mean of all: less light counts as so much */
+#define USUAL_RAYS 512.0
 #define FEWER 4u        /* rays and cells of the first look, which tells where receivers must be near each other */
 #define FIRST_LOOK 0.13 /* share of the time, about, of each look that tells where receivers must be near each other */
 #define LIVE_STATES 64u /* of all lights that are live, at which the first look asks for their light, about */
@@ -138,7 +144,8 @@ typedef struct finding {
     const baked_input *in;
     const states *states;
     transport_report report;
-    int looks; /* of VIT_RECEIVER_LEVELS, that are over or under way */
+    int looks;     /* of VIT_RECEIVER_LEVELS, that are over or under way */
+    uint32_t more; /* times as many rays as stated */
 } finding;
 
 static void first_step(void *user, double done) {
@@ -159,7 +166,7 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
     uint32_t lights = 0, of_light = CELLS_PER_RECEIVER * count;
     of_light = (of_light < CELLS_LEAST ? CELLS_LEAST : of_light < CELLS_MOST ? of_light : CELLS_MOST) / fewer;
     of_light = of_light > CELLS_LEAST ? of_light : CELLS_LEAST;
-    const uint32_t bounces = in->receiver_rays / BOUNCE_RAYS / fewer;
+    const uint32_t rays = in->receiver_rays * f->more, bounces = rays / BOUNCE_RAYS / fewer;
     const transport_input t = {.rays = in->rays,
                                .geometry = in->geometry,
                                .receivers = records,
@@ -168,7 +175,7 @@ static vit_status find(finding *f, const receiver *records, uint32_t count, uint
                                .state_count = f->states->count,
                                .reflections = in->reflections,
                                .cells = of_light,
-                               .receiver_rays = in->receiver_rays > fewer ? in->receiver_rays / fewer : 1,
+                               .receiver_rays = rays > fewer ? rays / fewer : 1,
                                .bounce_rays = of_light * (bounces > BOUNCE_LEAST ? bounces : BOUNCE_LEAST),
                                .looks = (double)in->receiver_rays * LOOKS,
                                .panes = in->panes,
@@ -205,25 +212,59 @@ static vit_status find_all(finding *f, const receivers *r, uint32_t fewer, const
         if (is_asked(r->receivers + i)) {
             memmove(out->irradiance + (size_t)i * columns, out->irradiance + (size_t)--count * columns,
                     columns * sizeof *out->irradiance);
-            if (out->noise)
-                out->noise[i] = out->noise[count];
+            out->noise[i] = out->noise[count];
         } else {
             memset(out->irradiance + (size_t)i * columns, 0, columns * sizeof *out->irradiance);
-            if (out->noise)
-                out->noise[i] = 0.0f;
+            out->noise[i] = 0.0f;
         }
+    if (status == VIT_OK && !receivers_pool_noise(r, out->noise))
+        return bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     if (status == VIT_OK)
         receivers_follow(r, out->irradiance, columns);
-    if (status == VIT_OK && out->noise)
+    if (status == VIT_OK)
         receivers_follow(r, out->noise, 1);
     return status;
+}
+
+/* A receiver's light, all columns. */
+static double light_of(const float *irradiance, uint32_t index, uint32_t columns) {
+    double sum = 0.0;
+    for (uint32_t c = 0; c < columns; c++)
+        sum += (double)irradiance[(size_t)index * columns + c];
+    return sum;
+}
+
+/* How many times as many rays the scene calls for, by the first look. */
+static uint32_t more_rays(const finding *f, const receivers *r, const transport_light *found) {
+    const uint32_t columns = 3 * f->states->count;
+    const double limit = NOISY * sqrt(USUAL_RAYS / (double)f->in->receiver_rays);
+    double logarithms = 0.0;
+    uint32_t lit = 0, asked = 0, noisy = 0;
+    for (uint32_t i = 0; i < r->count; i++) {
+        const double light = is_asked(r->receivers + i) ? light_of(found->irradiance, i, columns) : 0.0;
+        asked += is_asked(r->receivers + i);
+        logarithms += light > 0.0 ? log(light) : 0.0;
+        lit += light > 0.0;
+    }
+    const double dim = lit > 0 ? DIM * exp(logarithms / lit) : 0.0;
+    for (uint32_t i = 0; i < r->count; i++)
+        noisy +=
+            is_asked(r->receivers + i) && (double)found->noise[i] > limit * (light_of(found->irradiance, i, columns) + dim);
+    uint32_t more = noisy > NOISY_SHARE * asked ? MORE_RAYS : 1;
+    while (more > 1 && (uint64_t)more * asked > MORE_MOST)
+        more /= 2;
+    return more;
 }
 
 /* receivers_input.look */
 static vit_status look_first(void *user, const receivers *r, float *irradiance, float *noise, vit_text *why) {
     finding *f = user;
+    const transport_light light = {irradiance, noise};
     f->looks++;
-    return find_all(f, r, FEWER, &(transport_light){irradiance, noise}, why);
+    vit_status status = find_all(f, r, FEWER, &light, why);
+    if (status == VIT_OK && f->looks == 1 && (f->more = more_rays(f, r, &light)) > 1)
+        status = find_all(f, r, FEWER, &light, why);
+    return status;
 }
 
 static vit_status look_again(finding *f, baked *out, vit_text *why) {
@@ -233,12 +274,13 @@ static vit_status look_again(finding *f, baked *out, vit_text *why) {
     const receivers *r = &out->receivers;
     const transport_light light = {malloc(((size_t)r->count * columns + 1u) * sizeof *light.irradiance),
                                    malloc((r->count + 1u) * sizeof *light.noise)};
-    finding again = {.in = f->in, .states = &s};
+    finding again = {.in = f->in, .states = &s, .more = f->more};
     vit_status status = light.irradiance && light.noise ? find_all(&again, r, 1, &light, why) : VIT_FAILED;
     if (!light.irradiance || !light.noise ||
         (status == VIT_OK && !receivers_smooth(r, light.irradiance, light.noise, columns, f->in->threads)))
         status = bake_fail(why, VIT_FAILED, "indirect light: out of memory");
     out->report = again.report;
+    out->more_rays = f->more;
     if (status == VIT_OK && light.irradiance) /* bake_fail() fails */
         status = keep(f->in, &s, light.irradiance, out, why);
     free(light.irradiance);
@@ -307,7 +349,7 @@ static vit_status find_receivers(finding *f, baked *out, vit_text *why) {
 vit_status baked_find(const baked_input *in, baked *out, vit_text *why) {
     *out = (baked){0};
     states s = {0};
-    finding f = {.in = in, .states = &s};
+    finding f = {.in = in, .states = &s, .more = 1};
     vit_status status = make_states(in, &s, why);
     if (status == VIT_OK)
         status = in->points ? find_points(&f, out, why) : find_receivers(&f, out, why);

@@ -40,7 +40,8 @@ typedef struct baked {
     vit_basis_frame *frames; /* section BFRM: frame x light */
     uint32_t lights;
     transport_report report;
-    double seconds; /* that it took */
+    uint32_t more_rays; /* times baked_input.receiver_rays: more than 1 where light gets about by small gaps */
+    double seconds;     /* that it took */
 } baked;
 
 /* What can be told beforehand. */

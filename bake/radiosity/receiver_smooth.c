@@ -19,7 +19,8 @@ typedef struct neighbours {
 static void visit(const receivers *r, neighbours *n, bool count) {
     for (uint32_t i = 0; i < r->cell_count + r->split_count; i++) {
         const vit_u32 *corner = i < r->cell_count ? r->cells[i].receiver : r->splits[i - r->cell_count].receiver;
-        if (i < r->cell_count && VIT_RECEIVER_IS_DIVIDED(r->cells[i].split))
+        if ((i < r->cell_count && VIT_RECEIVER_IS_DIVIDED(r->cells[i].split)) || corner[0] >= r->count ||
+            corner[1] >= r->count || corner[2] >= r->count) /* of dark sides, while they have some */
             continue;
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
@@ -42,6 +43,31 @@ static bool find_neighbours(const receivers *r, neighbours *n) {
     if (n->of)
         visit(r, n, false);
     return n->of != NULL;
+}
+
+static bool is_known(const receivers *r, uint32_t i) {
+    return r->receivers[i].asked && !r->receivers[i].follows;
+}
+
+bool receivers_pool_noise(const receivers *r, float *noise) {
+    neighbours n = {0};
+    float *own = malloc((r->count + 1u) * sizeof *own);
+    const bool fine = own && find_neighbours(r, &n);
+    if (fine)
+        memcpy(own, noise, r->count * sizeof *own);
+    for (uint32_t i = 0; i < r->count && fine; i++) {
+        double squares = (double)own[i] * (double)own[i], all = 1.0;
+        for (uint32_t k = n.first[i]; k < n.first[i + 1] && is_known(r, i); k++)
+            if (is_known(r, n.of[k])) {
+                squares += (double)own[n.of[k]] * (double)own[n.of[k]];
+                all += 1.0;
+            }
+        noise[i] = (float)sqrt(squares / all);
+    }
+    free(own);
+    free(n.first);
+    free(n.of);
+    return fine;
 }
 
 typedef struct smoothing {

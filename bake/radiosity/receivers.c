@@ -371,6 +371,7 @@ static vit_status divide(placing *p, vit_text *why) {
         float *irradiance = malloc(((size_t)p->out->count * in->columns + 1u) * sizeof *irradiance),
               *noise = malloc((p->out->count + 1u) * sizeof *noise);
         ask(p);
+        p->out->cell_count = p->end;
         status = irradiance && noise ? in->look(in->user, p->out, irradiance, noise, why)
                                      : bake_fail(why, VIT_FAILED, "receivers: out of memory");
         if (status == VIT_OK && !divide_pieces(p, irradiance, noise))

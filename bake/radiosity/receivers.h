@@ -25,7 +25,8 @@ typedef struct receivers_input {
     uint32_t records;               /* whose light is computed for the first look, about: above that others follow them */
     unsigned threads;               /* 0: all cores; changes no byte */
     /* A first look at the light of receivers that are asked, roughly: receivers x columns, and the deviation of each one's, all
-     * columns added up. Cells whose corners differ much are divided. NULL: none is. */
+     * columns added up. Cells whose corners differ much are divided. NULL: none is. Of `r` there are receivers, followers, and
+     * cells as they are so far. */
     vit_status (*look)(void *user, const struct receivers *r, float *irradiance, float *noise, vit_text *why);
     void *user;
     uint32_t columns;
@@ -79,8 +80,12 @@ bool receivers_copy(const receivers *from, uint32_t placed, receivers *to);
 void *receivers_copied(const void *from, size_t count, size_t size);
 /* Light of followers, from that of records: receivers x columns. */
 void receivers_follow(const receivers *r, float *irradiance, uint32_t columns);
-/* receiver_smooth.c: takes out what is noise: irradiance, receivers x columns, and noise, as receivers_input.look gives them.
- * False: out of memory. */
+/* receiver_smooth.c: a deviation is little known from rays few of which met what is bright: each one's becomes the root of the
+ * mean square of its own and those of the corners of its cells, of receivers that are asked. At a look, too. False: out of
+ * memory. */
+bool receivers_pool_noise(const receivers *r, float *noise);
+/* Takes out what is noise: irradiance, receivers x columns, and noise, as receivers_input.look gives them. False: out of
+ * memory. */
 bool receivers_smooth(const receivers *r, float *irradiance, float *noise, uint32_t columns, unsigned threads);
 
 #endif

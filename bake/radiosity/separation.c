@@ -176,8 +176,10 @@ static void find(void *user, uint32_t number) {
         f->alone[number] |= (s.hidden[i] | 1u << i) == SEPARATION_EVERYWHERE ? 1u << i : 0u;
     const uint32_t not_alone = SEPARATION_EVERYWHERE & ~f->alone[number];
     out->is[0] = find_plane(&s, not_alone, out->plane) || find_plane(&s, SEPARATION_EVERYWHERE, out->plane);
-    for (int k = 0; k < 2 && out->is[0]; k++)
-        out->is[1 + k] = find_plane(&s, not_alone & (k ? ~out->plane[0].places : out->plane[0].places), out->plane + 1 + k);
+    for (int k = 0; k < 2 && out->is[0]; k++) {
+        const uint32_t half = SEPARATION_EVERYWHERE & (k ? ~out->plane[0].places : out->plane[0].places);
+        out->is[1 + k] = find_plane(&s, not_alone & half, out->plane + 1 + k) || find_plane(&s, half, out->plane + 1 + k);
+    }
 }
 
 /* As lists. False: out of memory. */

@@ -82,8 +82,8 @@ static void a_lamp_close_to_a_wall_lights_what_is_round_about(void **state) {
                   "{ time = 2.0; position = [-3.88, 1.8, 0.6]; } ); } );\n",
                   ROOMS_SIDE, ROOMS_SIDE, ROOMS_VIEWS);
     (void)fclose(f);
-    scene_lab_indirect(*state, "close.cfg", "--indirect basis --receiver-rays 64", light, ROOMS_FLOATS);
-    scene_lab_indirect(*state, "close.cfg", "--indirect radiosity --receiver-rays 64 --patches 512", live, ROOMS_FLOATS);
+    scene_lab_indirect(*state, "close.cfg", "--indirect basis --receiver-rays 256", light, ROOMS_FLOATS);
+    scene_lab_indirect(*state, "close.cfg", "--indirect radiosity --receiver-rays 256 --patches 512", live, ROOMS_FLOATS);
     for (int view = 0; view < ROOMS_VIEWS; view++)
         print_message("  view %d: %.4f\n", view, rooms_mean(live, view) / rooms_mean(light, view));
     for (int view = 0; view < ROOMS_VIEWS; view++)
@@ -131,6 +131,39 @@ static void a_moving_light_keeps_its_colour(void **state) {
         }
 }
 
+/* Two rooms of our own that a wall parts, with a slit in it `wide` metres wide. */
+static void write_slit(scene_lab *l, double wide) {
+    FILE *f = rooms_mesh(l);
+    rooms_box(f, (const double[]){-4.0, 0.0, -2.0}, (const double[]){0.0, 3.0, 2.0}, 0, 1u << 3);
+    rooms_box(f, (const double[]){0.0, 0.0, -2.0}, (const double[]){4.0, 3.0, 2.0}, 8, 1u << 2);
+    rooms_box(f, (const double[]){-0.05, 0.0, -2.0}, (const double[]){0.05, 3.0, 0.0}, 16, 3);
+    rooms_box(f, (const double[]){-0.05, 0.0, wide}, (const double[]){0.05, 3.0, 2.0}, 24, 3);
+    (void)fclose(f);
+    f = scene_lab_create(l, "slit.cfg");
+    (void)fprintf(
+        f,
+        "output: { width = %d; height = %d; fps = 1.0; frames = 1; };\nmeshes = ( { file = \"rooms.obj\"; } );\n"
+        "camera: { near = 0.1; keys = ( { fov = 80.0; eye = [3.7, 1.5, 1.6]; target = [0.05, 1.2, -0.4]; } ); };\n"
+        "lights = ( { type = \"point\"; keys = ( { position = [-2.0, 2.0, 1.3]; power = [100.0, 90.0, 80.0]; } ); } );\n",
+        ROOMS_SIDE, ROOMS_SIDE);
+    (void)fclose(f);
+}
+
+/* Where light gets into the room that is seen by a slit, few of 128 rays find it, and there are more of them; where it gets in
+ * by a wide opening, there are not. */
+static void light_by_a_slit_is_looked_for_with_more_rays(void **state) {
+    static const double wide[2] = {0.02, 1.5};
+    for (int i = 0; i < 2; i++) {
+        char line[1024];
+        write_slit(*state, wide[i]);
+        (void)snprintf(line, sizeof line, "%s -o %s --no-check --device host --indirect basis --receiver-rays 128",
+                       scene_lab_path(*state, "slit.cfg"), scene_lab_path(*state, "slit.vit"));
+        scene_lab_run(*state, "vitrine-bake", line);
+        assert_int_equal(i == 0, scene_lab_said(*state, "light gets about by small gaps: 512 rays of each receiver, not "
+                                                        "receiver_rays = 128"));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_to_speak_of_comes_through_a_thin_wall),
@@ -138,6 +171,7 @@ int main(void) {
         cmocka_unit_test(a_light_that_changes_gives_what_one_that_stays_gives),
         cmocka_unit_test(a_lamp_close_to_a_wall_lights_what_is_round_about),
         cmocka_unit_test(a_moving_light_keeps_its_colour),
+        cmocka_unit_test(light_by_a_slit_is_looked_for_with_more_rays),
     };
     return cmocka_run_group_tests_name("baked light", tests, set_up, scene_lab_tear_down);
 }

@@ -217,7 +217,7 @@ static void a_basis_that_is_wrong_is_refined(void **state) {
     size_t sizes[2];
     scene_lab *l = *state;
     write_scene(l, "", 2, "{ position = [-0.7, -0.992, -0.3]; power = [10.0, 10.0, 10.0]; }", /* 8 mm off the floor */
-                "quality: { auto = true; receiver_rays = 32; };\n");
+                "quality: { auto = true; receiver_rays = 16; };\n");
     bake_checked(l, "scene.vit", "--indirect auto");
     quality_said(l, line);
     const char *chosen_settings = strstr(line, "{ indirect = \"basis\"; receiver_spacing = ");

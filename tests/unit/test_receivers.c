@@ -425,6 +425,44 @@ static void noise_is_smoothed_and_steps_stay(void **state) {
     close_lab(&l);
 }
 
+/* One in eight met what is bright, and says so; those about it know too little. Not asked: one in five. */
+static void deviations_are_known_by_neighbours_together(void **state) {
+    (void)state;
+    lab l;
+    open_lab(&l, room_closed(0.5f));
+    const receivers_input in = seen_from_the_middle(&l, 2.5f);
+    receivers found;
+    vit_text why = {""};
+    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    float *noise = calloc(found.count, sizeof *noise), *own = calloc(found.count, sizeof *own);
+    assert_true(noise && own);
+    for (uint32_t i = 0; i < found.count; i++) {
+        found.receivers[i].asked = pcg(i + 7) % 5u != 0;
+        noise[i] = own[i] = !found.receivers[i].asked ? 100.0f : pcg(i) % 8u == 0 ? 1.0f : 0.0f;
+    }
+    assert_true(receivers_pool_noise(&found, noise));
+    double before = 0, after = 0;
+    uint32_t asked = 0, none = 0;
+    for (uint32_t i = 0; i < found.count; i++) {
+        if (!found.receivers[i].asked) {
+            assert_true(noise[i] == own[i]);
+            continue;
+        }
+        before += (double)own[i] * (double)own[i];
+        after += (double)noise[i] * (double)noise[i];
+        asked++;
+        none += noise[i] == 0.0f;
+    }
+    print_message("mean square %.4f before, %.4f after; %.3f of the receivers know of none\n", before / asked, after / asked,
+                  (double)none / asked);
+    assert_true(fabs(after / before - 1) < 0.15); /* a mean of means: edges of the room count less */
+    assert_true(none < 0.6 * asked);              /* 0.875 without neighbours */
+    free(noise);
+    free(own);
+    receivers_free(&found);
+    close_lab(&l);
+}
+
 /* Beside a spot of light at the edge of a cell the neighbour's corners tell nothing of it: it is divided, too. */
 static void what_lies_on_an_edge_is_seen_from_both_cells(void **state) {
     (void)state;
@@ -470,6 +508,7 @@ int main(void) {
         cmocka_unit_test(no_place_beside_a_wall_takes_light_of_its_inside),
         cmocka_unit_test(what_lies_near_records_follows_them_where_light_is_even),
         cmocka_unit_test(noise_is_smoothed_and_steps_stay),
+        cmocka_unit_test(deviations_are_known_by_neighbours_together),
         cmocka_unit_test(what_lies_on_an_edge_is_seen_from_both_cells),
     };
     return cmocka_run_group_tests_name("receivers", tests, NULL, NULL);

@@ -323,6 +323,36 @@ static void light_does_not_get_past_walls_that_cross(void **state) {
     close_lab(&l);
 }
 
+/* A wall with two faces across the room, at five places: of cells that go on beneath it some have a single one of the places
+ * that are looked at beyond it, and that one must not count as inside of the wall. */
+static void light_does_not_get_past_walls_with_two_faces(void **state) {
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        lab l;
+        room *r = room_closed(0.5f);
+        const float left = 0.01f + 0.026f * (float)k, right = left + 0.11f;
+        room_quad(r, (const float[]){left, -1, -1}, (const float[]){0, 0, 2}, (const float[]){0, 2, 0}, WALLS);
+        room_quad(r, (const float[]){right, -1, -1}, (const float[]){0, 2, 0}, (const float[]){0, 0, 2}, WALLS);
+        open_painted(&l, r);
+        const photons_light lamp = room_point_light(-0.4f, 0.1f, 0.3f, 1);
+        const transport_state only = {&lamp, 1};
+        places at;
+        float *irradiance = light_of(&l, &only, 1, TRANSPORT_CONVERGED, (effort){8, 512, 256, 65536}, &at);
+        double lit = 0, beyond = 0;
+        for (uint32_t i = 0; i < at.count; i++) {
+            const receiver *from = at.each + i;
+            const vec3 p =
+                vec3_along(side_place(&l.r->g, from->side, from->b1, from->b2), side_face(&l.r->g, from->side), 1e-3f);
+            *(p.x < left ? &lit : &beyond) += (double)irradiance[3 * i];
+        }
+        print_message("wall from %g: light within and beyond it over that before it: %g\n", (double)left, beyond / lit);
+        assert_true(beyond < 1e-3 * lit);
+        free(irradiance);
+        free(at.each);
+        close_lab(&l);
+    }
+}
+
 /* Two rooms with a gap under the wall between them: most places of the dark one see lit cells, but none of their light. What
  * cells' means and light close by add up to is 0 there, and not less. */
 static void light_is_never_less_than_none(void **state) {
@@ -357,6 +387,7 @@ int main(void) {
         cmocka_unit_test(light_from_very_near_is_kept),
         cmocka_unit_test(light_of_a_spot_close_by_comes_from_where_it_is),
         cmocka_unit_test(light_does_not_get_past_walls_that_cross),
+        cmocka_unit_test(light_does_not_get_past_walls_with_two_faces),
         cmocka_unit_test(light_is_never_less_than_none),
     };
     return cmocka_run_group_tests_name("transport", tests, NULL, NULL);
