@@ -67,6 +67,12 @@ static void baked_light_of_a_moving_light_bakes_to_the_same_bytes(void **state) 
     assert_bakes_alike(TEST_SCENES "/cornell.cfg", "--indirect basis --size 96x64 --frames 12 --receiver-rays 16", ALL_WAYS);
 }
 
+static void baked_light_at_points_bakes_to_the_same_bytes(void **state) {
+    (void)state;
+    assert_bakes_alike(TEST_SCENES "/cornell.cfg",
+                       "--indirect basis --size 96x64 --frames 12 --receiver-rays 16 --basis-receivers points", HOST_WAYS);
+}
+
 static void a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes(void **state) {
     (void)state;
     assert_bakes_alike(TEST_PACKS "/room.cfg", "--estimate buckets", HOST_WAYS);
@@ -87,6 +93,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_with_a_moving_light_bakes_to_the_same_bytes),
         cmocka_unit_test(baked_light_of_a_moving_light_bakes_to_the_same_bytes),
+        cmocka_unit_test(baked_light_at_points_bakes_to_the_same_bytes),
         cmocka_unit_test(a_room_with_still_lights_textures_and_holes_bakes_to_the_same_bytes),
         cmocka_unit_test(zones_and_areas_bake_to_the_same_bytes),
         cmocka_unit_test(a_mesh_without_a_scene_file_bakes_to_the_same_bytes),
