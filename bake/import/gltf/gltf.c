@@ -175,9 +175,12 @@ static bool is_it(const uint8_t *head, size_t size) {
 }
 
 static const char *const suffixes[] = {".gltf", ".glb", NULL};
-static const char *const cannot[] = {
-    "animations",       "normal maps and emissive textures",          "vertex colours that vary",
-    "pictures in KTX2", "surfaces that are seen from one side alone", NULL};
+static const char *const cannot[] = {"animations",
+                                     "emissive textures",
+                                     "vertex colours that vary",
+                                     "pictures in KTX2",
+                                     "surfaces that are seen from one side alone",
+                                     NULL};
 const import_format gltf_format = {.name = "glTF 2.0",
                                    .suffixes = suffixes,
                                    .cannot = cannot,
