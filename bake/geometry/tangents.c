@@ -281,7 +281,7 @@ vit_status tangents_pack(const model *m, const vit_u32 *normals, vit_u32 **words
     const size_t corners = 3 * (size_t)s.count;
     while (size < 2 * corners)
         size *= 2;
-    s.triangle = malloc(s.count * sizeof *s.triangle);
+    s.triangle = calloc(s.count, sizeof *s.triangle);
     s.vertex = malloc(corners * sizeof *s.vertex);
     s.neighbour = malloc(corners * sizeof *s.neighbour);
     s.group = malloc(corners * sizeof *s.group);
