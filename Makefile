@@ -34,7 +34,7 @@ CFLAGS_ALL := $(BASE) $(WARN) $(OPT) $(CFLAGS)
 
 # The kernels in the order in which they are joined into one program.
 KERNELS := ../include/vitrine_frame.h records.clh cache_cell.clh counters.clh transfer_code.clh strict.clh lanes.clh work.clh random.clh scene.clh texture.clh ray.clh bundle.clh surface.clh specular.clh cells.clh receivers.cl visibility.cl bundle_visibility.cl \
-           chains.cl samples.cl direct.cl bundle_direct.cl radiosity.cl skylight.cl cache.clh cache.cl photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl indirect.cl sparse.cl film.cl resolve.cl transfer_product.clh transfer_product.cl
+           chains.cl samples.cl direct.cl bundle_direct.cl radiosity.cl skylight.cl cache.clh cache.cl photons.cl clusters.cl hierarchy.cl splat.cl estimate.cl indirect.cl sparse.cl film.cl gloss.cl resolve.cl transfer_product.clh transfer_product.cl
 
 RUNTIME := $(filter-out $(if $(filter 0,$(OPENCL)),runtime/device_opencl.c),$(wildcard runtime/*.c)) runtime/host/pool.c runtime/host/programs.c
 PLAY := $(wildcard runtime/play/*.c runtime/play/sinks/*.c)

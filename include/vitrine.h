@@ -87,7 +87,7 @@ typedef struct vit_buffer_info {
     uint64_t bytes;
 } vit_buffer_info;
 
-#define VIT_MAX_BUFFERS 80
+#define VIT_MAX_BUFFERS 96
 #define VIT_MAX_PASSES 64
 #define VIT_MAX_WORKS 16
 

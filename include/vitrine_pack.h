@@ -22,7 +22,7 @@
 #include "vitrine.h"
 
 #define VIT_PACK_MAGIC "VITRINE" /* 8 bytes with its zero */
-#define VIT_PACK_VERSION 11u
+#define VIT_PACK_VERSION 12u
 #define VIT_PACK_ALIGN 4096u
 #define VIT_WORD                                                                                                               \
     4u /* bytes of every field of every record but vit_scene.effects, and so what a machine of the other byte order swaps by   \

@@ -36,6 +36,7 @@ typedef struct lit_sample {
     lv3 face;         /* normal of the triangle on the seen side, of any length (with smooth normals) */
     lf exponent;      /* of the lobe; -alpha of a GGX lobe */
     lv3 specular;     /* of the lobe, at normal incidence (with effect ggx) */
+    li no_lobe;       /* lanes whose lobe gets none of the light that is added (with effect gloss) */
     lv3 matt, glossy; /* sums of irradiance, W/m2, and of irradiance times the lobe, W/(m2 sr); with
                        * effect ggx times its reflectance too, and matt light is what Fresnel's term leaves */
 } lit_sample;
@@ -59,6 +60,7 @@ static inline lit_sample lit_load(global const vit_scene *scene, ROUND_PARAMETER
     lit_sample s;
     uint n = scene->samples;
     s.hit = hit;
+    s.no_lobe = L_I(0);
     s.p = sample_position(scene, position, first);
     s.n = l_decode_normal(L_LOAD(normal + first));
     s.matt = s.glossy = s.specular = s.v = s.face = lv3_set(L_F(0), L_F(0), L_F(0));
@@ -90,6 +92,8 @@ static inline void lit_add_facets(lit_sample *s, lv3 l, lv3 light) {
     specular_facets f = specular_at_facets(s->n, l, s->v, l_sel(facets, -s->exponent, L_F(1)));
     lf lobe = l_sel(facets, f.lobe, specular_lobe(s->n, l, s->v, l_sel(facets, L_F(1), s->exponent)));
     lf grazing = l_sel(facets, f.grazing, L_F(0));
+    if (VIT_EFFECT_GLOSS)
+        lobe = l_sel(s->no_lobe, L_F(0), lobe);
     lv3 g = s->specular;
     g = lv3_set(fma(1.0f - g.x, grazing, g.x), fma(1.0f - g.y, grazing, g.y), fma(1.0f - g.z, grazing, g.z));
     s->glossy = lv3_along(s->glossy, lv3_set(light.x * g.x, light.y * g.y, light.z * g.z), lobe);
@@ -291,6 +295,9 @@ static inline li lit_shines(global const uint *specular, uint first) {
     return VIT_EFFECT_SPECULAR ? L_NE(L_AS_INT(L_LOAD(specular + first)), L_I(0)) : L_I(0);
 }
 
+/* With effect gloss: from which alpha on points find area lights for GGX lobes, and below rays do (gloss.cl). */
+#define GLOSS_POINTS 0.04f
+
 #if VIT_WITH(AREA_RAYS)
 kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
                        LIT_PARAMETERS WORK_PARAMETERS) {
@@ -304,6 +311,8 @@ kernel void area_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_
         return;
     WORK_BEGIN
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
+    if (VIT_EFFECT_GLOSS)
+        s.no_lobe = L_LT(s.exponent, L_F(0)) & L_GT(s.exponent, L_F(-GLOSS_POINTS));
     lit_by_area_lights(RAY_SCENE, area_lights, scene->area_samples, 0, lit_set(first, round / layers),
                        L_AS_INT(L_LOAD(hit_triangle + first)), &s WORK_PASS);
     if (VIT_EFFECT_LIGHTMAP)

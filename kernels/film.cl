@@ -15,17 +15,25 @@ static inline int view_light(vit_view view) {
     return 0;
 }
 
+/* A view of indirect light alone: `direct` holds lobes' part of it (gloss_filter). */
+#define FILM_GLOSS_ALONE                                                                                                       \
+    (VIT_EFFECT_GLOSS && (view_light((vit_view)VIT_VIEW) & (VIT_SHOWS_DIRECT | VIT_SHOWS_INDIRECT)) == VIT_SHOWS_INDIRECT)
+
 /* What a pixel's sample sees, W/(m2 sr), by VIT_VIEW, before exposure. */
 static inline lv3 sample_radiance(uint n, uint first, global const uint *albedo, global const float *direct,
                                   global const float *indirect, global const uint *specular, global const float *rays) {
     lv3 c = lv3_set(L_F(0), L_F(0), L_F(0));
     int light = view_light((vit_view)VIT_VIEW);
-    if (light & VIT_SHOWS_DIRECT)
+    if ((light & VIT_SHOWS_DIRECT) || FILM_GLOSS_ALONE)
         c = lv3_load_planes(direct, n, first);
     if (VIT_EFFECT_INDIRECT && (light & VIT_SHOWS_INDIRECT)) {
         lv3 a = l_decode_albedo(L_LOAD(albedo + first)), e = lv3_load_planes(indirect, n, first);
-        if (VIT_EFFECT_SPECULAR) /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
-            a = lv3_along(a, l_decode_albedo(L_LOAD(specular + first)), L_F(1));
+        if (VIT_EFFECT_SPECULAR) { /* indirect light comes from all about: the lobe reflects as much as a matt surface would */
+            lf part = L_F(1);
+            if (VIT_EFFECT_GLOSS) /* but for those that have it by rays */
+                part = l_sel(L_LT(L_AS_FLOAT(L_LOAD(specular + n + first)), L_F(0)), L_F(0), part);
+            a = lv3_along(a, l_decode_albedo(L_LOAD(specular + first)), part);
+        }
         a = lv3_scale(a, L_F(VIT_INV_PI));
         c = lv3_set(fma(a.x, e.x, c.x), fma(a.y, e.y, c.y), fma(a.z, e.z, c.z));
     }

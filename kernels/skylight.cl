@@ -3,34 +3,11 @@
  * over the window about it of those on the same surface, so that 16 times as many directions count as are traced. Albedo comes
  * after, so textures stay sharp. */
 
-#if VIT_WITH(SKY_RAYS)
+#if VIT_WITH(SKY_RAYS) || VIT_WITH(GLOSS)
 #define SKYLIGHT_BENT                                                                                                          \
     16.0f /* weight lost with the square of a neighbour's height over the tangent plane, by its distance: none left from 1/4   \
            */
 #define SKYLIGHT_FLAT 4.0f /* ray_offsets of height that do not count: what rounding makes of a plane */
-
-/* Irradiance, and with specular reflection what the lobe reflects, into planes of `skylight`; -1 where there is no sample. */
-kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
-                      global const uint *hit_triangle, global const float *position, global const uint *normal,
-                      global const float *rays, global const uint *specular, global float *skylight WORK_PARAMETERS) {
-    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
-    if (first >= n || round_skips(first, active))
-        return;
-    li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
-    if (VIT_EFFECT_LIGHTMAP) /* the matt light of others is baked */
-        hit &= lit_shines(specular, first);
-    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
-    if (l_any(hit)) {
-        WORK_BEGIN
-        lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1,
-                           lit_set(first, round / layers), triangle, &s WORK_PASS);
-        WORK_END
-    }
-    s.matt.x = l_sel(hit, s.matt.x, L_F(-1));
-    lv3_store_planes(s.matt, skylight, n, first);
-    if (VIT_EFFECT_SPECULAR)
-        lv3_store_planes(s.glossy, skylight + 3 * (size_t)n, n, first);
-}
 
 /* Weights, 0..1, of samples at p of unit normal s in what those at `at` of normal `own` (packed: own_code) get. */
 static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, float flat) {
@@ -45,6 +22,37 @@ static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, f
         w *= l_sel(turned, cosine * cosine, L_F(1));
     }
     return w;
+}
+
+#endif
+
+#if VIT_WITH(SKY_RAYS)
+/* Irradiance, and with specular reflection what the lobe reflects, into planes of `skylight`; -1 where there is no sample. */
+kernel void sky_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light_sample *area_lights,
+                      global const uint *hit_triangle, global const float *position, global const uint *normal,
+                      global const float *rays, global const uint *specular, global float *skylight WORK_PARAMETERS) {
+    uint first = (uint)get_global_id(0) * VIT_LANES, n = scene->samples;
+    if (first >= n || round_skips(first, active))
+        return;
+    li triangle = L_AS_INT(L_LOAD(hit_triangle + first)), hit = L_NE(triangle, L_I((int)VIT_NONE));
+    if (VIT_EFFECT_LIGHTMAP) /* the matt light of others is baked */
+        hit &= lit_shines(specular, first);
+    lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
+    if (VIT_EFFECT_GLOSS) { /* rays find the sky for GGX lobes */
+        s.no_lobe = L_LT(s.exponent, L_F(0));
+        if (VIT_EFFECT_LIGHTMAP)
+            s.hit = hit &= ~s.no_lobe;
+    }
+    if (l_any(hit)) {
+        WORK_BEGIN
+        lit_by_area_lights(RAY_SCENE, area_lights + VIT_PATTERNS * scene->area_samples, scene->sky_samples, 1,
+                           lit_set(first, round / layers), triangle, &s WORK_PASS);
+        WORK_END
+    }
+    s.matt.x = l_sel(hit, s.matt.x, L_F(-1));
+    lv3_store_planes(s.matt, skylight, n, first);
+    if (VIT_EFFECT_SPECULAR)
+        lv3_store_planes(s.glossy, skylight + 3 * (size_t)n, n, first);
 }
 
 kernel void sky_filter(global const vit_scene *scene, global const float *position, global const uint *normal,

@@ -101,7 +101,8 @@ vit_status vit_pack_check_brightness(const vit_pack *p, vit_text *why) {
         const double live = s->patches ? 2.0 * (direct + (double)s->most_reflected * VIT_MAX_REFLECT) : 0.0;
         const double seen = (direct + points) * peak +
                             ((stored + traced) * LEAST_AREA_INVERSE + still + basis * shining + live) * (2.0 / PI) + own;
-        const double most = seen * 2.0 * s->copies * (exposure > 1.0 ? exposure : 1.0);
+        const double gloss = s->effects & VIT_BIT(GLOSS) ? 2.0 : 1.0; /* what is seen in lobes comes on top */
+        const double most = gloss * seen * 2.0 * s->copies * (exposure > 1.0 ? exposure : 1.0);
         if (!(most <= MOST_LIGHT))
             return vit_pack_refuse(
                 why,

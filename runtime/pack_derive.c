@@ -79,6 +79,7 @@ static vit_status check_counts(const vit_scene *s, vit_text *why) {
         {"sky_samples", s->sky_samples, 0, VIT_MAX_LIGHT_SAMPLES},
         {"sky_size", s->sky_size, 0, VIT_MAX_SKY},
         {"chain", s->chain, 0, VIT_MAX_CHAIN},
+        {"gloss_rays", s->gloss_rays, 0, VIT_MAX_GLOSS_RAYS},
         {"copies", s->copies, 1, VIT_MAX_COPIES},
         {"slice_count", s->slice_count, 1, MAX_SLICES},
     };

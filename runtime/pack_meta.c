@@ -69,7 +69,9 @@ static vit_status check_floats(const vit_scene *s, vit_text *why) {
     for (int i = 0; i < VIT_MAX_COPIES; i++)
         if (!all_in_range(s->offset[i], 2, -1.0f, 1.0f))
             return vit_pack_refuse(why, "section META: offset %d must be in -1..1", i);
-    return VIT_OK;
+    return s->gloss_pad[0] == 0 && s->gloss_pad[1] == 0 && s->gloss_pad[2] == 0
+               ? VIT_OK
+               : vit_pack_refuse(why, "section META: padding is not 0");
 }
 
 /* An effect makes no sense without the one that it refines. */
@@ -173,6 +175,8 @@ static vit_status check_effects(const vit_scene *s, vit_text *why) {
                                s->area_samples, s->sky_samples);
     if (s->sky_size == 0 && (e & VIT_BIT(SKY_IMAGE)))
         return vit_pack_refuse(why, "section META: the effect SKY_IMAGE without a sky");
+    if ((s->gloss_rays > 0) != ((e & VIT_BIT(GLOSS)) != 0))
+        return vit_pack_refuse(why, "section META: %u rays of lobes contradict the effect GLOSS", s->gloss_rays);
     if ((s->chain > 0) != ((e & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) != 0))
         return vit_pack_refuse(why, "section META: chains of %u contradict the effects MIRROR and GLASS", s->chain);
     if ((s->copies > 1) != ((e & VIT_BIT(ANTIALIAS)) != 0))

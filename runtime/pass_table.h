@@ -65,6 +65,11 @@
       B(skylight), B(direct))                                                                                                  \
     X(ambient_light, ON(OCCLUSION), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(hit_triangle), B(position),     \
       B(normal), B(albedo), B(specular), B(cache), B(cache_counts), B(direct), ARGS_WORK)                                      \
+    X(gloss, ON(GLOSS), EACH, PER_SAMPLE, ONCE, W(gloss), ARGS_RAYS, B(maps), ARGS_ROUND, B(lights), B(area_lights), B(sky),   \
+      B(sides), B(receiver_cells), B(receiver_splits), B(receivers), B(relit), B(map_sides), B(map_cells), B(map_splits),      \
+      B(map_receivers), B(hit_triangle), B(position), B(normal), B(rays), B(specular), B(gloss), B(reached), ARGS_WORK)        \
+    X(gloss_filter, ON(GLOSS), EACH, PER_SAMPLE, ONCE, W(direct), B(scene), ARGS_ROUND, B(position), B(normal), B(rays),       \
+      B(specular), B(gloss), B(direct))                                                                                        \
     X(clear_masks, ON(PHOTONS), EACH, PER_MASK_WORD, ONCE, W(masks) | W(counters), B(scene), V(round), B(masks), B(counters))  \
     X(photon_paths, ON(TRACED), FIRST, PER_PATH, ONCE, W(photons) | W(counters), ARGS_RAYS, B(maps), B(lights), V(frame),      \
       B(sides), B(cells), B(photons), B(counters), B(reached), ARGS_WORK)                                                      \

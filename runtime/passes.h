@@ -93,6 +93,7 @@ typedef struct vit_launch {
     X(cache_frame, ON(LIVE_CACHE), NONE, (uint64_t)s->cache_cells *VIT_CACHE_POINTS * 8)                                       \
     X(specular, ON(SPECULAR), NONE, (uint64_t)s->samples * 8)                                                                  \
     X(skylight, ON_SKY_RAYS, NONE, (uint64_t)s->samples *(l->effects & ON(SPECULAR) ? 24 : 12))                                \
+    X(gloss, ON(GLOSS), NONE, (uint64_t)s->samples * 24)                                                                       \
     X(by_rays, ON(LIGHTMAP_RAYS), NONE, (uint64_t)s->samples * 4)                                                              \
     X(rays, ON_CHAINS, NONE, (uint64_t)s->samples * 40)                                                                        \
     X(split, ON(GLASS), NONE, s->samples / 16 * 4)                                                                             \

@@ -25,6 +25,9 @@
       (4 + z->position + 4 + z->face + z->view + z->specular / 2 + z->skylight + sizeof(vit_light_sample) * z->sky_samples) *  \
           z->samples)                                                                                                          \
     X(sky_filter, (z->position + 4 + 4 + z->specular / 2 + z->skylight + 12 + 12) * z->samples)                                \
+    X(gloss, (4 + z->position + 4 + z->face + z->view + z->specular + 24) * z->samples + z->lights +                           \
+                 (z->received + z->mapped) * w[VIT_WORK_surface_points] + HITS)                                                \
+    X(gloss_filter, (z->position + 4 + z->end + z->specular + 24 + 12 + 12) * z->samples)                                      \
     X(ambient_light, (4 + z->position + 4 + 4 + z->specular / 2 + 12 + 12) * z->samples + 4 * w[VIT_WORK_evaluations])         \
     X(point_light, (4 + z->position + 4 + 4 + 12) * z->samples + (4 + 4 + 12) * w[VIT_WORK_evaluations])                       \
     X(cache_sample, (4 + z->position + 4 + z->face) * z->samples + (12 + 8) * w[VIT_WORK_shadow_rays])                         \
@@ -159,6 +162,7 @@ static sizes sizes_of(const vit_scene *s, const vit_launch *l, const uint32_t *c
     z.face = l->effects & ON(SMOOTH) ? sizeof(vit_triangle) : 0;
     z.view = z.specular && z.end ? 12 : 0;
     z.shown += (l->effects & ON_CHAINS ? 12u : 0u) + (z.specular ? 4u : 0u);
+    z.shown += l->effects & ON(GLOSS) && vit_view_light(l->view) == VIT_SHOWS_INDIRECT ? 12u : 0u;
     z.area_samples = s->area_samples;
     z.sky_samples = s->sky_samples;
     z.lamps = l->effects & ON(AREA_LIGHTS) ? 4 : 0;

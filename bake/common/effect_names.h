@@ -7,7 +7,7 @@
 /* Effects that only act where rays reach; AREA_LIGHTS acts wherever its light falls. */
 #define EFFECTS_SETTLED                                                                                                        \
     (VIT_BIT(TEXTURES) | VIT_BIT(CUTOUT) | VIT_BIT(EMISSION) | VIT_BIT(SMOOTH) | VIT_BIT(SPECULAR) | VIT_BIT(MIRROR) |         \
-     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(GGX) | VIT_BIT(NORMAL_MAPS))
+     VIT_BIT(GLASS) | VIT_BIT(CAUSTICS) | VIT_BIT(SKY_IMAGE) | VIT_BIT(GGX) | VIT_BIT(NORMAL_MAPS) | VIT_BIT(GLOSS))
 /* Effects that a scene's `effects` may name, force on and force off: those of surfaces, the sky and pixels. */
 #define EFFECTS_NAMED                                                                                                          \
     (EFFECTS_SETTLED | VIT_BIT(AREA_LIGHTS) | VIT_BIT(SKY_LIGHT) | VIT_BIT(AMBIENT) | VIT_BIT(OCCLUSION) | VIT_BIT(ANTIALIAS))

@@ -11,8 +11,8 @@ static const struct {
     const char *kind;
     uint64_t units;
 } weights[] = {
-    {"view_rays", 140}, {"shadow_rays", 130}, {"chain_rays", 700},     {"photon_rays", 4400},    {"node_tests", 12},
-    {"pairs", 250},     {"evaluations", 7},   {"surface_points", 160}, {"texture_fetches", 100},
+    {"view_rays", 140}, {"shadow_rays", 130}, {"chain_rays", 700}, {"gloss_rays", 700},     {"photon_rays", 4400},
+    {"node_tests", 12}, {"pairs", 250},       {"evaluations", 7},  {"surface_points", 160}, {"texture_fetches", 100},
 };
 
 static uint64_t weight_of(const char *kind) {

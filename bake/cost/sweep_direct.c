@@ -10,7 +10,7 @@ typedef struct direct_settings {
     vit_u64 effects;
     vit_u32 width, height, area_samples, sky_samples, sky_size, chain, copies;
     float contrast, background[3], ambient[3], offset[VIT_MAX_COPIES][2];
-    vit_u32 pad;
+    vit_u32 gloss_rays;
 } direct_settings;
 
 static uint64_t settings_key(const vit_scene *s) {
@@ -23,6 +23,7 @@ static uint64_t settings_key(const vit_scene *s) {
     d.sky_samples = s->sky_samples;
     d.sky_size = s->sky_size;
     d.chain = s->chain;
+    d.gloss_rays = s->gloss_rays;
     d.copies = s->copies;
     d.contrast = s->contrast;
     memcpy(d.background, s->background, sizeof d.background);

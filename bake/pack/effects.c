@@ -41,6 +41,8 @@ void effects_drop(vit_scene *c, uint64_t effects) {
         c->effects &= ~vit_effects_upon(VIT_BIT(INDIRECT));
     if (!(c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))))
         c->chain = 0;
+    if (!(c->effects & VIT_BIT(GLOSS)))
+        c->gloss_rays = 0;
     if (!(c->effects & VIT_BIT(ANTIALIAS))) {
         c->copies = 1;
         c->contrast = 0;
@@ -67,7 +69,8 @@ void effects_drop(vit_scene *c, uint64_t effects) {
 void effects_force(const scene *s, vit_scene *c, effects_decided *out) {
     const uint64_t planned = c->effects;
     /* What may stand idle in a program: it needs nothing that the pack may lack. */
-    const uint64_t needs_data = VIT_BIT(SKY_IMAGE) | (planned & VIT_BIT(PHOTONS) ? 0 : VIT_BIT(CAUSTICS));
+    const uint64_t needs_data = VIT_BIT(SKY_IMAGE) | (planned & VIT_BIT(PHOTONS) ? VIT_BIT(GLOSS) : VIT_BIT(CAUSTICS)) |
+                                (planned & VIT_BIT(POINTS) || s->quality.gloss_rays == 0 ? VIT_BIT(GLOSS) : 0);
     const uint64_t idle = (EFFECTS_SETTLED & ~needs_data) | VIT_BIT(AMBIENT);
     if (s->effects_choice == EFFECTS_LISTED)
         effects_drop(c, EFFECTS_NAMED & ~s->effects);
@@ -75,6 +78,10 @@ void effects_force(const scene *s, vit_scene *c, effects_decided *out) {
         c->effects |= idle & (s->effects_choice == EFFECTS_ALL ? idle : s->effects);
         if ((c->effects & (VIT_BIT(MIRROR) | VIT_BIT(GLASS))) && c->chain == 0)
             c->chain = (uint32_t)s->quality.specular_depth;
+        if (!(c->effects & VIT_BIT(GGX)))
+            c->effects &= ~VIT_BIT(GLOSS);
+        if (c->effects & VIT_BIT(GLOSS))
+            c->gloss_rays = (uint32_t)s->quality.gloss_rays;
     }
     /* A list may name what needs something that it does not name. */
 #define X(effect, needed)                                                                                                      \
@@ -99,13 +106,13 @@ uint64_t effects_of_material(const vit_material *m, const vit_maps *maps) {
     if (is_positive(m->emission))
         e |= VIT_BIT(EMISSION) | (m->lights ? VIT_BIT(AREA_LIGHTS) : 0);
     if (m->kind == VIT_MATTE)
-        return e | (is_positive(m->specular) ? VIT_BIT(SPECULAR) | (m->alpha > 0.0f ? VIT_BIT(GGX) : 0) : 0);
+        return e | (is_positive(m->specular) ? VIT_BIT(SPECULAR) | (m->alpha > 0.0f ? VIT_BIT(GGX) | VIT_BIT(GLOSS) : 0) : 0);
     return e | VIT_BIT(CAUSTICS) | (m->kind == VIT_MIRROR ? VIT_BIT(MIRROR) : VIT_BIT(GLASS));
 }
 
 /* Rays that an effect is for. */
 static uint32_t ways(uint64_t effect) {
-    if (effect == VIT_BIT(EMISSION) || effect == VIT_BIT(SKY_IMAGE))
+    if (effect == VIT_BIT(EMISSION) || effect == VIT_BIT(SKY_IMAGE) || effect == VIT_BIT(GLOSS))
         return VIT_REACHED_VIEW;
     if (effect == VIT_BIT(CAUSTICS))
         return VIT_REACHED_PHOTON | EFFECTS_REACHED_BAKED;

@@ -137,7 +137,7 @@ static uint64_t effects_of_materials(const scene *s, const model *m, const plan 
     for (int i = 0; i < m->material_count; i++)
         if (m->materials[i].triangles > 0)
             e |= effects_of_material(&p->materials[i], &p->maps[i]) &
-                 ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS)); /* which need photons, and points: plan_make() */
+                 ~(VIT_BIT(CAUSTICS) | VIT_BIT(AREA_LIGHTS) | VIT_BIT(GLOSS)); /* which need more: plan_effects() */
     return e & VIT_BIT(TEXTURES) ? e | filters[s->quality.texture_filter] : e;
 }
 
@@ -303,6 +303,10 @@ static vit_status plan_effects(const plan_input *in, plan *p, vit_text *why) {
     if (status != VIT_OK)
         return status;
     c->effects |= effects_of_indirect(s, in->tracks, p);
+    if ((c->effects & VIT_BIT(GGX)) && s->quality.gloss_rays > 0 && !(c->effects & (VIT_BIT(PHOTONS) | VIT_BIT(POINTS)))) {
+        c->effects |= VIT_BIT(GLOSS); /* photons and points say nothing of places that no view sample sees */
+        c->gloss_rays = (uint32_t)s->quality.gloss_rays;
+    }
     c->effects |= is_positive(c->ambient) ? VIT_BIT(AMBIENT) : 0;
     c->effects |= is_positive(c->ambient) && s->ambient_radius > 0 ? VIT_BIT(OCCLUSION) : 0;
     c->effects |= c->effects & VIT_BIT(OCCLUSION) && s->quality.cache == CACHE_PROGRESSIVE ? VIT_BIT(LIVE_CACHE) : 0;

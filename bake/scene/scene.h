@@ -123,7 +123,7 @@ vit_status scene_read(const char *path, scene *out, vit_text *why);
 vit_status scene_for_mesh(const char *path, scene *out, vit_text *why);
 void scene_free(scene *s);
 
-#define SCENE_QUALITY 1024 /* bytes that a quality block takes as text */
+#define SCENE_QUALITY 1536 /* bytes that a quality block takes as text */
 /* Puts settings as a quality block holds them, "photons = 4000; radius = \"auto\";", over *q. VIT_BAD_INPUT, and *q is as it
  * was. */
 vit_status scene_quality_apply(const char *text, scene_quality *q, vit_text *why);

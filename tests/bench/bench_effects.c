@@ -45,6 +45,10 @@ enum {
       "{ name = \"right\"; color = [0.1, 0.2, 0.3]; specular = [0.5, 0.5, 0.5]; roughness = 0.6; }",                           \
       "", "")                                                                                                                  \
     X(NORMAL_MAPS, LAMP, MATT ", { name = \"floor\"; normal_map = \"wood.png\"; }", "", "")                                    \
+    X(GLOSS, LAMP,                                                                                                             \
+      "{ name = \"left\"; color = [0.4, 0.2, 0.1]; specular = [0.4, 0.4, 0.4]; roughness = 0.3; },"                            \
+      "{ name = \"right\"; color = [0.1, 0.2, 0.3]; specular = [0.5, 0.5, 0.5]; roughness = 0.6; }",                           \
+      "background = [0.8, 1.0, 1.3]; sky: { light = true; };", "")                                                             \
     X(MIRROR, LAMP, "{ name = \"left\"; kind = \"mirror\"; specular = [0.9, 0.9, 0.9]; }", "", "")                             \
     X(GLASS, LAMP, "{ name = \"right\"; kind = \"glass\"; ior = 1.5; absorption = [0.6, 0.3, 0.1]; }", "",                     \
       "caustics = false;")                                                                                                     \
@@ -156,8 +160,9 @@ static void write_scene(size_t i) {
         f,
         "output: { width = %d; height = %d; frames = 2; };\nmeshes = ( { file = \"room.obj\"; }, { file = \"balls.obj\"; } );\n"
         "camera: { keys = ( { eye = [0.0, 0.9, 3.3]; target = [0.0, 0.75, 0.0]; fov = 40.0; } ); };\nlights = ( %s );\n"
-        "materials = ( %s );\n%s\nquality: { indirect = \"photons\"; bounces = 4; %s%s };\n",
+        "materials = ( %s );\n%s\nquality: { indirect = \"%s\"; bounces = 4; %s%s };\n",
         width(), height(), rows[i].lights, rows[i].materials, rows[i].scene,
+        rows[i].effect == VIT_BIT(GLOSS) ? "basis" : "photons", /* with which there is none */
         strstr(rows[i].quality, "photons") ? "" : "photons = 20000; radius = 0.2; ", rows[i].quality);
     fclose(f);
 }

@@ -57,6 +57,8 @@ static const char paint[] = "newmtl stone\nKd 0.6 0.5 0.4\nnewmtl thing\nKd 0.4 
     X(SPECULAR, LAMP, "specular = [0.3, 0.3, 0.3]; exponent = 40.0;", "", "")                                                  \
     X(GGX, LAMP, "specular = [0.3, 0.3, 0.3]; roughness = 0.3;", "", "")                                                       \
     X(NORMAL_MAPS, LAMP, "normal_map = \"holes.tga\";", "", "")                                                                \
+    X(GLOSS, LAMP, "specular = [0.3, 0.3, 0.3]; roughness = 0.3;", "background = [0.3, 0.4, 0.5]; sky: { light = true; };",    \
+      "sky_samples = 4; bounces = 1;")                                                                                         \
     X(MIRROR, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                  \
     X(GLASS, LAMP, "kind = \"glass\"; ior = 1.5; absorption = [0.1, 0.2, 0.3];", "", "")                                       \
     X(CAUSTICS, LAMP, "kind = \"mirror\"; specular = [0.9, 0.9, 0.9];", "", "")                                                \
@@ -174,7 +176,8 @@ static played play_idle(const void *bytes, uint64_t effect) {
     vit_text why = {""};
     void *idle = NULL;
     size_t size;
-    s.effects |= effect | (effect == VIT_BIT(GGX) ? VIT_BIT(SPECULAR) : 0);
+    s.effects |= effect | (effect & (VIT_BIT(GGX) | VIT_BIT(GLOSS)) ? VIT_BIT(GGX) | VIT_BIT(SPECULAR) : 0);
+    s.gloss_rays = effect == VIT_BIT(GLOSS) ? 4 : 0;
     s.effects |= effect == VIT_BIT(NORMAL_MAPS) ? VIT_BIT(TEXTURES) | VIT_BIT(SMOOTH) : 0;
     for (int i = 0; i < MATERIALS; i++)
         no_maps[i] = (vit_maps){.normal = VIT_NONE, .normal_scale = 1};

@@ -10,7 +10,7 @@
 
 #define CONTAINER_FAULTS(X)                                                                                                    \
     X(header, wrong_magic, "not a Vitrine pack", im->header->magic[0] = 'v')                                                   \
-    X(header, newer_version, "version 12", im->header->version = 12)                                                           \
+    X(header, newer_version, "version 13", im->header->version = 13)                                                           \
     X(header, too_few_sections, "13 sections", im->header->sections = 13)                                                      \
     X(header, huge_number_of_sections, "4294967295 sections", im->header->sections = 0xffffffff)                               \
     X(header, huge_size, "the file", im->header->size = UINT64_MAX)                                                            \
@@ -79,6 +79,7 @@
     X(META, directional_without_lights, "DIRECTIONAL without LIGHTS",                                                          \
       EFFECTS(BIT(DIRECTIONAL), BIT(LIGHTS) | BIT(SPOT) | BIT(RANGE) | BIT(TRACED)))                                           \
     X(META, levels_of_points, "1 levels, 0 cells and 0 splits contradict", im->scene->point_levels = 1)                        \
+    X(META, reserved_words_in_use, "padding", im->scene->gloss_pad[2] = 1)                                                     \
     X(EMIT, position_is_nan, "point 3: position", im->emitters[3].position[1] = NAN)                                           \
     X(EMIT, normal_too_short, "point 0: position is not finite, or normal", im->emitters[0].normal[1] = -0.5f)                 \
     X(EMIT, direction_too_long, "point 16", im->emitters[16].position[1] = 2)                                                  \
@@ -136,6 +137,11 @@
       EFFECTS(BIT(SPARSE), vit_effects_upon(BIT(PHOTONS)) & ~BIT(SPARSE)))                                                     \
     X(META, list_without_photons, "TRACED without PHOTONS", EFFECTS(0, BIT(PHOTONS)))                                          \
     X(META, raw_without_buckets, "RAW_BUCKETS without BUCKETS", EFFECTS(BIT(RAW_BUCKETS), 0))                                  \
+    X(META, gloss_without_facets, "GLOSS without GGX", EFFECTS(BIT(GLOSS) | BIT(SPECULAR), 0), im->scene->gloss_rays = 8)      \
+    X(META, gloss_without_rays, "0 rays of lobes contradict", EFFECTS(BIT(GLOSS) | BIT(GGX) | BIT(SPECULAR), 0))               \
+    X(META, rays_of_lobes_without_gloss, "4 rays of lobes contradict", im->scene->gloss_rays = 4)                              \
+    X(META, too_many_rays_of_lobes, "gloss_rays", EFFECTS(BIT(GLOSS) | BIT(GGX) | BIT(SPECULAR), 0),                           \
+      im->scene->gloss_rays = 65)                                                                                              \
     X(META, facets_without_lobes, "GGX without SPECULAR", EFFECTS(BIT(GGX), BIT(SPECULAR)))                                    \
     X(META, sixteenths_without_sparse, "SPARSE_16 without SPARSE", EFFECTS(BIT(SPARSE_16), 0))                                 \
     X(META, cells_without_their_effects, "27 cells contradict", EFFECTS(0, BIT(ZONES) | BIT(AREA)))                            \

@@ -96,6 +96,19 @@ static void each_thing_calls_for_its_effect_alone(void **state) {
     assert_true(added(MAKES("specular = (0, 0, 0); exponent = 20;")) == 0);
     assert_true(added(MAKES("specular = (0.1, 0, 0); roughness = 0.5;")) == (VIT_BIT(SPECULAR) | VIT_BIT(GGX)));
     assert_true(added(MAKES("specular = (0, 0, 0); roughness = 0.5;")) == 0);
+    /* Surroundings, unless photons make the light of what is seen in them, as here. */
+    static const char none[] = "quality: { photons = 0; };", few[] = "quality: { photons = 0; gloss_rays = 0; };";
+    vit_u64 gloss[2];
+    for (int i = 0; i < 2; i++) {
+        planned x;
+        char whole[1024];
+        (void)snprintf(whole, sizeof whole, LAMP "%s%s", MAKES("specular = (0.1, 0, 0); roughness = 0.5;"), i ? few : none);
+        plan_scene(whole, &x);
+        gloss[i] = x.p.scene.effects & VIT_BIT(GLOSS);
+        assert_int_equal(x.p.scene.gloss_rays, i ? 0 : 8);
+        plan_scene_free(&x);
+    }
+    assert_true(gloss[0] && !gloss[1]);
     assert_true(added(MAKES("kind = \"mirror\";")) == (VIT_BIT(MIRROR) | VIT_BIT(CAUSTICS)));
     assert_true(added(MAKES("kind = \"glass\";")) == (VIT_BIT(GLASS) | VIT_BIT(CAUSTICS)));
     assert_true(added(MAKES("kind = \"thin_glass\";") "quality: { caustics = false; };") == VIT_BIT(GLASS));

@@ -66,7 +66,7 @@ static void every_setting_is_read(void **state) {
         "  { name = \"c\"; kind = \"thin_glass\"; }, { name = \"d\"; kind = \"matt\"; exponent = 80; area_light = false; }, "
         "{ name = \"e\"; roughness = 0.5; } );\n"
         "quality: { antialias = 8; antialias_contrast = 0.25; antialias_filter = \"tent\"; light_samples = 64;\n"
-        "  sky_samples = 32; specular_depth = 5; lobe = \"ggx\"; caustics = false; };\n",
+        "  sky_samples = 32; specular_depth = 5; lobe = \"ggx\"; gloss_rays = 6; caustics = false; };\n",
         &s);
     assert_true(is(s.ambient, 0.02, 0.03, 0.04));
     assert_string_equal(s.sky.image, FOLDER "/sky.hdr");
@@ -85,7 +85,7 @@ static void every_setting_is_read(void **state) {
     const scene_quality *q = &s.quality;
     assert_true(q->antialias == 8 && q->antialias_contrast == 0.25 && q->tent && q->light_samples == 64 &&
                 q->sky_samples == 32);
-    assert_true(q->specular_depth == 5 && q->ggx && !q->caustics);
+    assert_true(q->specular_depth == 5 && q->ggx && q->gloss_rays == 6 && !q->caustics);
     scene_free(&s);
 }
 
@@ -200,6 +200,7 @@ REFUSES(an_unknown_filter_is_refused, "'antialias_filter' must be \"box\" or \"t
         QUALITY("antialias_filter = \"gauss\";"))
 REFUSES(no_samples_of_area_lights_are_refused, "'light_samples' must be in [1, 1024], got 0", QUALITY("light_samples = 0;"))
 REFUSES(too_many_samples_of_the_sky_are_refused, "'sky_samples' must be in [1, 1024], got 1025", QUALITY("sky_samples = 1025;"))
+REFUSES(too_many_rays_of_lobes_are_refused, "'gloss_rays' must be in [0, 64], got 65", QUALITY("gloss_rays = 65;"))
 REFUSES(chains_of_0_are_refused, "'specular_depth' must be in [1, 32], got 0", QUALITY("specular_depth = 0;"))
 REFUSES(caustics_that_are_no_switch_are_refused, "'caustics' must be true or false", QUALITY("caustics = 1;"))
 
@@ -333,6 +334,7 @@ int main(void) {
         T(an_unknown_filter_is_refused),
         T(no_samples_of_area_lights_are_refused),
         T(too_many_samples_of_the_sky_are_refused),
+        T(too_many_rays_of_lobes_are_refused),
         T(chains_of_0_are_refused),
         T(caustics_that_are_no_switch_are_refused),
         T(copies_spread_over_the_pixel),

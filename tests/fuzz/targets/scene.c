@@ -57,6 +57,7 @@ static void check_quality(const scene_quality *q) {
     in_range(q->light_samples, 1, VIT_MAX_LIGHT_SAMPLES);
     in_range(q->sky_samples, 1, VIT_MAX_LIGHT_SAMPLES);
     in_range(q->specular_depth, 1, VIT_MAX_CHAIN);
+    in_range(q->gloss_rays, 0, VIT_MAX_GLOSS_RAYS);
 }
 
 static void check_scene(const scene *s) {
