@@ -43,7 +43,8 @@ typedef struct host_lab_mesh {
     X(lobe, 10, 1)                                                                                                             \
     X(mirrored, 9, 3)                                                                                                          \
     X(glass, 12, 7)                                                                                                            \
-    X(absorbed, 2, 1)
+    X(absorbed, 2, 1)                                                                                                          \
+    X(mean, 4, 3)
 
 typedef enum host_lab_function {
 #define X(name, in, out) HOST_LAB_##name,

@@ -198,6 +198,9 @@ static void call_light(host_lab_function f, const host_lab_given *given, const f
         OUT(p.mirror, 6);
         break;
     }
+    case HOST_LAB_mean:
+        OUT3(specular_mean(IN3(0), IN(3)), 0);
+        break;
     default:
         OUT(specular_absorbed(IN(0), IN(1)), 0);
     }

@@ -33,6 +33,13 @@ static inline specular_paths specular_at_glass(vec3 d, vec3 n, vec3 face, bool b
     return r;
 }
 
+/* What a GGX lobe reflects of light from all about, seen from all about. */
+static inline vec3 specular_mean(vec3 specular, float alpha) {
+    const float a = fmaf(alpha, fmaf(alpha, fmaf(alpha, fmaf(alpha, -0.77097f, 2.16076f), -1.94118f), 0.00253f), 0.95395f),
+                b = fmaf(alpha, fmaf(alpha, fmaf(alpha, fmaf(alpha, 0.08177f, -0.25908f), 0.31687f), -0.18614f), 0.04936f);
+    return (vec3){fmaf(specular.x, a, b), fmaf(specular.y, a, b), fmaf(specular.z, a, b)};
+}
+
 /* exp(-absorption * distance), a channel. */
 static inline vec3 specular_absorbed(vec3 absorption, float distance) {
     return (vec3){power_of_two(float_max(absorption.x * distance * -1.44269504f, -126.0f)),

@@ -1,4 +1,5 @@
 #include "light/photon_surface.h"
+#include "light/photon_specular.h"
 
 /* Signed edge functions of a triangle: weights of its vertices, not normalised; ray_edges() of kernels/ray.clh. */
 static void edge_weights(const vit_triangle *t, vec3 origin, vec3 direction, float weight[3]) {
@@ -213,6 +214,16 @@ bool photon_opaque_place(const photon_scene *s, uint32_t triangle, const float b
     const uint32_t x = (uint32_t)u < mip->width ? (uint32_t)u : mip->width - 1;
     const uint32_t y = (uint32_t)v < mip->height ? (uint32_t)v : mip->height - 1;
     return s->atlas->texels[mip->offset + y * mip->pitch + x] >> 31;
+}
+
+vec3 photon_reflectance(const photon_scene *s, const photon_surface *at) {
+    const vit_material *m = at->material;
+    vec3 lobe = vec3_load(m->specular);
+    if (!(s->effects & VIT_BIT(SPECULAR)) || !(lobe.x + lobe.y + lobe.z > 0.0f))
+        return at->albedo;
+    if ((s->effects & VIT_BIT(GGX)) && m->alpha > 0.0f)
+        lobe = specular_mean(lobe, m->alpha);
+    return vec3_along(at->albedo, lobe, 1.0f);
 }
 
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle) {

@@ -39,6 +39,8 @@ photon_surface photon_surface_at(const photon_scene *s, vec3 origin, vec3 direct
 /* The same through a footprint of `cone` metres a metre of distance; b: the hit's barycentric weights. */
 photon_surface photon_surface_seen(const photon_scene *s, vec3 origin, vec3 direction, float distance, uint32_t triangle,
                                    float cone, float b[3]);
+/* What it reflects of light from all about, seen from all about, a channel: its albedo, and what its lobe does on average. */
+vec3 photon_reflectance(const photon_scene *s, const photon_surface *at);
 /* False: the ray meets the triangle where its material is cut out; as ray_opaque() of kernels/ray.clh. */
 bool photon_opaque_at(const photon_scene *s, vec3 origin, vec3 direction, uint32_t triangle);
 /* The same of the place of barycentric weights b. */

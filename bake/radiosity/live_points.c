@@ -78,9 +78,8 @@ static void describe(void *user, uint32_t patch) {
         const photon_surface at =
             photon_surface_seen(s, vec3_along(place, face, high), vec3_scale(face, -1.0f), high, q->side / 2, 0.25f, b);
         const vec3 off = vec3_along(place, face, s->ray_offset);
-        const float lobe = s->effects & VIT_BIT(SPECULAR) ? 1.0f : 0.0f; /* reflects as much as a matt surface would */
-        const float albedo[3] = {at.albedo.x + lobe * at.material->specular[0], at.albedo.y + lobe * at.material->specular[1],
-                                 at.albedo.z + lobe * at.material->specular[2]};
+        const vec3 reflectance = photon_reflectance(s, &at);
+        const float albedo[3] = {reflectance.x, reflectance.y, reflectance.z};
         vit_patch_point *to = w->out->points + i;
         *to = (vit_patch_point){.position = {off.x, off.y, off.z},
                                 .patch = patch,

@@ -263,7 +263,6 @@ static void cell_albedo(const patches_input *in, const cells *c, uint32_t cell, 
     const uint32_t side = c->side_of[cell];
     const cell_corners k = cells_corners(c, cell);
     const vec3 face = side_face(in->geometry, side);
-    const vit_material *m = s->materials + (s->attributes[side / 2].material & VIT_MATERIAL_INDEX);
     for (uint32_t i = 0; i < ALBEDO_SAMPLES; i++) {
         const float u = sqrtf(((float)i + 0.5f) / ALBEDO_SAMPLES), v = unit_float(i * 0x9e3779b9u + 0x40000000u);
         const float w[3] = {1.0f - u, u * (1.0f - v), u * v};
@@ -274,11 +273,10 @@ static void cell_albedo(const patches_input *in, const cells *c, uint32_t cell, 
         }
         const vec3 origin = vec3_along(side_place(in->geometry, side, b1, b2), face, edge);
         const photon_surface found = photon_surface_seen(s, origin, vec3_scale(face, -1.0f), edge, side / 2, 0.5f, b);
-        const float albedo[3] = {found.albedo.x, found.albedo.y, found.albedo.z};
-        for (int channel = 0; channel < 3; channel++) {
-            const float lobe = s->effects & VIT_BIT(SPECULAR) ? m->specular[channel] : 0.0f;
-            out[channel] += (double)(albedo[channel] + lobe) / ALBEDO_SAMPLES;
-        }
+        const vec3 reflectance = photon_reflectance(s, &found);
+        out[0] += (double)reflectance.x / ALBEDO_SAMPLES;
+        out[1] += (double)reflectance.y / ALBEDO_SAMPLES;
+        out[2] += (double)reflectance.z / ALBEDO_SAMPLES;
     }
 }
 

@@ -43,13 +43,10 @@ static spot spot_at(const transport *t, const transport_place *p, float edge) {
     float b[3];
     const vec3 above = vec3_along(transport_place_at(t, p), face, high);
     const photon_surface at = photon_surface_seen(s, above, vec3_scale(face, -1.0f), high, p->side / 2, 0.25f, b);
-    /* A lobe reflects as much as a matt surface would. */
-    const float *lobe = at.material->specular;
-    const vec3 albedo = {at.albedo.x + lobe[0], at.albedo.y + lobe[1], at.albedo.z + lobe[2]};
     return (spot){.position = vec3_along(transport_place_at(t, p), face, s->ray_offset),
                   .face = face,
                   .normal = at.normal,
-                  .albedo = albedo};
+                  .albedo = photon_reflectance(s, &at)};
 }
 
 static vec3 light_that_passes(const transport *t, const spot *at, const arrival *a, uint32_t *likely) {

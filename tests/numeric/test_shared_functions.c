@@ -116,6 +116,10 @@ static void fill(host_lab_function f, uint32_t i) {
     case HOST_LAB_emission:
         *number = bits_float(16 + i % 4096);
         return;
+    case HOST_LAB_mean:
+        put3(0, i, (vec3){random_unit(), random_unit(), random_unit()});
+        number[3 * COUNT] = between(i, VIT_MIN_ALPHA, 1);
+        return;
     case HOST_LAB_absorbed:
         number[0] = between(i, 0, 100);
         number[COUNT] = between(i / 64, 0, 10);
@@ -222,6 +226,9 @@ static void baker_light(host_lab_function f, const host_lab_given *with, const f
         b[6] = p.mirror;
         return;
     }
+    case HOST_LAB_mean:
+        give3(specular_mean(get3(a), a[3]), b);
+        return;
     default:
         *b = specular_absorbed((vec3){a[0], 0, 0}, a[1]).x;
     }
