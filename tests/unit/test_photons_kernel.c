@@ -12,7 +12,7 @@ static const char frame_zero[] =
     "                                    global const uint *cells, global vit_photon *photons,\n"
     "                                    volatile global uint *counters)\n"
     "{\n"
-    "    photon_paths(RAY_SCENE, lights, 0u, sides, cells, photons, counters, 0);\n"
+    "    photon_paths(RAY_SCENE, 0, lights, 0u, sides, cells, photons, counters, 0);\n"
     "}\n";
 
 /* The lights of `r` as moving ones, traced by kernels/photons.cl: all slots, all lights side by side. */
