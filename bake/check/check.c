@@ -172,7 +172,7 @@ static check_ratio compare_dark(const check *c, const float *picture, double mea
     for (uint32_t i = 0; i < c->count; i++) /* all four sequences, or the mean of two at half weight */
         variance += (in[i] == 2 ? 1.0 : in[i] ? 0.5 : 0.0) * 3 * sum3(c->spots[i].variance);
     check_ratio r = ratio(seen, right, variance);
-    if (fabs(seen - right) <= NOTICED * mean * pixels)
+    if (fabs(seen - right) <= NOTICED * mean * pixels || seen + right <= BLACK * pixels)
         r.value = 1;
     *share = right > 0 ? limited / right : 1;
     return r;
@@ -215,7 +215,8 @@ static void compare(const check *c, const float *picture, check_found *out) {
     *out = (check_found){.direct = 1, .indirect = 1, .limited = sum3(right) > 0 ? limited / sum3(right) : 1};
     for (int k = 0; k < 3; k++) {
         out->flux[k] = ratio(seen[k], right[k], variance[k]);
-        if (right[k] <= 1e-3 * sum3(right) && seen[k] <= 2e-3 * sum3(right)) /* a channel without light */
+        if ((right[k] <= 1e-3 * sum3(right) && seen[k] <= 2e-3 * sum3(right)) || /* a channel without light */
+            (right[k] + seen[k] <= BLACK * c->count))                            /* nothing to see in either */
             out->flux[k].value = 1;
         out->worst = fmax(out->worst, beyond(out->flux[k]));
     }

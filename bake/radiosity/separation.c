@@ -6,6 +6,8 @@
 #define EVEN 16u          /* places even over the cell; the last three are its corners */
 #define CANDIDATES 12u    /* planes that are tried, at most */
 #define LOOKS 4           /* ways in which a place looks for what is round it */
+#define PARALLEL 0.99f    /* cosine of two faces of a wall, at least */
+#define APART 4.0f        /* ray offsets: faces so close are one */
 #define INSIDE 3u         /* of these that end on backs: the place may be inside of a body */
 
 bool separation_sees(const photon_rays *rays, vec3 a, vec3 b) {
@@ -150,6 +152,28 @@ static bool find_plane(const search *s, uint32_t among, separation *out) {
     return best > 0;
 }
 
+/* A wall with two faces closer to each other than places are: another plane than `first` that parts all places alike and is on
+ * its side `half` (0: in front), the farthest one. What lies between the two is within the wall. False: there is none. */
+static bool find_other_face(const search *s, const separation *first, int half, separation *out) {
+    const vec3 n = vec3_load(first->normal);
+    float farthest = APART * s->rays->s->ray_offset;
+    bool found = false;
+    for (uint32_t c = 0; c < s->planes; c++) {
+        const vec3 m = side_face(s->g, 2 * s->triangle[c]), on = vec3_load(s->g->triangles[s->triangle[c]].v0);
+        const float offset = vec3_dot(m, on), off = (vec3_dot(n, on) - first->offset) * (half ? -1.0f : 1.0f);
+        uint32_t front = 0;
+        for (uint32_t i = 0; i < SEPARATION_PLACES; i++)
+            front |= vec3_dot(m, s->at[i]) > offset ? 1u << i : 0u;
+        if (fabsf(vec3_dot(m, n)) < PARALLEL || !(off > farthest) ||
+            (front != first->places && front != (~first->places & SEPARATION_EVERYWHERE)))
+            continue;
+        farthest = off;
+        found = true;
+        *out = (separation){.normal = {m.x, m.y, m.z}, .offset = offset, .places = front, .further = {VIT_NONE, VIT_NONE}};
+    }
+    return found;
+}
+
 /* Of a cell: what parts it, and what parts the places in front of that, and behind, once more. */
 typedef struct parting {
     separation plane[3];
@@ -178,7 +202,8 @@ static void find(void *user, uint32_t number) {
     out->is[0] = find_plane(&s, not_alone, out->plane) || find_plane(&s, SEPARATION_EVERYWHERE, out->plane);
     for (int k = 0; k < 2 && out->is[0]; k++) {
         const uint32_t half = SEPARATION_EVERYWHERE & (k ? ~out->plane[0].places : out->plane[0].places);
-        out->is[1 + k] = find_plane(&s, not_alone & half, out->plane + 1 + k) || find_plane(&s, half, out->plane + 1 + k);
+        out->is[1 + k] = find_plane(&s, not_alone & half, out->plane + 1 + k) || find_plane(&s, half, out->plane + 1 + k) ||
+                         find_other_face(&s, out->plane, k, out->plane + 1 + k);
     }
 }
 

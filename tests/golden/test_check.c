@@ -98,6 +98,28 @@ static void light_that_leaks_through_a_wall_is_warned_of(void **state) {
     says(l, "zones = true", false);
 }
 
+/* A wall of 8 mm stands between it and the lamp, on a floor that goes on beneath it. */
+static void a_room_that_no_light_reaches_is_black_and_right(void **state) {
+    scene_lab *l = *state;
+    FILE *f = scene_lab_create(l, "two.obj");
+    const double x[4] = {-3.0, 0.0, 0.008, 3.0};
+    (void)fprintf(f, "mtllib room.mtl\nusemtl grey\n");
+    for (int i = 0; i < 16; i++)
+        (void)fprintf(f, "v %g %d %d\n", x[i / 4], i & 1 ? 1 : -1, i & 2 ? 1 : -1);
+    (void)fprintf(f, "f 1 2 4 3\nf 13 15 16 14\nf 1 3 15 13\nf 2 14 16 4\nf 1 13 14 2\nf 3 4 16 15\n" /* the rooms */
+                     "f 5 6 8 7\nf 9 11 12 10\n");                                                    /* the wall */
+    (void)fclose(f);
+    f = scene_lab_create(l, "scene.cfg");
+    (void)fprintf(
+        f, "output: { width = 48; height = 48; frames = 1; };\nmeshes = ( { file = \"two.obj\"; } );\n"
+           "camera: { keys = ( { eye = [2.5, 0.5, 0.7]; target = [0.0, -0.2, -0.5]; fov = 70.0; } ); };\n"
+           "lights = ( { type = \"point\"; keys = ( { position = [-1.5, 0.5, 0.2]; power = [300.0, 300.0, 300.0]; } ); } );\n");
+    (void)fclose(f);
+    bake(l, "--quiet --indirect basis");
+    says(l, "no light reaches what the camera sees", true);
+    says(l, "inf", false);
+}
+
 static void the_figures_are_the_same_with_any_number_of_threads(void **state) {
     char one[512], three[512];
     scene_lab *l = *state;
@@ -200,6 +222,7 @@ int main(void) {
         cmocka_unit_test(a_right_picture_is_said_to_be_right),
         cmocka_unit_test(what_is_left_out_is_warned_of_with_the_setting_that_mends_it),
         cmocka_unit_test(light_that_leaks_through_a_wall_is_warned_of),
+        cmocka_unit_test(a_room_that_no_light_reaches_is_black_and_right),
         cmocka_unit_test(the_figures_are_the_same_with_any_number_of_threads),
         cmocka_unit_test(black_and_white_pictures_are_warned_of_with_the_reason),
         cmocka_unit_test(a_suggested_exposure_shows_the_picture),
