@@ -98,22 +98,22 @@ static void light_that_leaks_through_a_wall_is_warned_of(void **state) {
     says(l, "zones = true", false);
 }
 
-/* A wall of 8 mm stands between it and the lamp, on a floor that goes on beneath it. */
+/* A wall of 8 mm stands between it and the lamp, on a floor that goes on beneath it: what comes through is less than shows. */
 static void a_room_that_no_light_reaches_is_black_and_right(void **state) {
     scene_lab *l = *state;
     FILE *f = scene_lab_create(l, "two.obj");
-    const double x[4] = {-3.0, 0.0, 0.008, 3.0};
+    const double x[4] = {0.0, 3.0, 3.008, 6.008};
     (void)fprintf(f, "mtllib room.mtl\nusemtl grey\n");
     for (int i = 0; i < 16; i++)
-        (void)fprintf(f, "v %g %d %d\n", x[i / 4], i & 1 ? 1 : -1, i & 2 ? 1 : -1);
+        (void)fprintf(f, "v %g %g %d\n", x[i / 4], i & 1 ? 2.5 : 0.0, i & 2 ? 3 : 0);
     (void)fprintf(f, "f 1 2 4 3\nf 13 15 16 14\nf 1 3 15 13\nf 2 14 16 4\nf 1 13 14 2\nf 3 4 16 15\n" /* the rooms */
-                     "f 5 6 8 7\nf 9 11 12 10\n");                                                    /* the wall */
+                     "f 5 7 8 6\nf 9 10 12 11\nf 5 9 11 7\nf 6 8 12 10\nf 5 6 10 9\nf 7 11 12 8\n");  /* the wall */
     (void)fclose(f);
     f = scene_lab_create(l, "scene.cfg");
     (void)fprintf(
-        f, "output: { width = 48; height = 48; frames = 1; };\nmeshes = ( { file = \"two.obj\"; } );\n"
-           "camera: { keys = ( { eye = [2.5, 0.5, 0.7]; target = [0.0, -0.2, -0.5]; fov = 70.0; } ); };\n"
-           "lights = ( { type = \"point\"; keys = ( { position = [-1.5, 0.5, 0.2]; power = [300.0, 300.0, 300.0]; } ); } );\n");
+        f, "output: { width = 160; height = 120; frames = 1; };\nmeshes = ( { file = \"two.obj\"; } );\n"
+           "camera: { keys = ( { eye = [5.8, 2.3, 0.2]; target = [3.0, 1.0, 1.6]; fov = 70.0; } ); };\n"
+           "lights = ( { type = \"point\"; keys = ( { position = [1.5, 2.2, 1.5]; power = [120.0, 110.0, 100.0]; } ); } );\n");
     (void)fclose(f);
     bake(l, "--quiet --indirect basis");
     says(l, "no light reaches what the camera sees", true);
