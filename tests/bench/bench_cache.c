@@ -279,9 +279,14 @@ static void run(const view *v, progress *shown, csv *out) {
     must(pipeline_load(&l.p, &why));
     const pipeline_choice choice = pipeline_default(&l.p);
     must(pipeline_pack(&l.p, &choice, &packed, &why));
-    l.scene = (photon_scene){
-        packed.geometry->triangles,  packed.geometry->attributes, packed.model->triangles,  packed.plan.materials, &l.p.atlas,
-        packed.geometry->ray_offset, packed.plan.scene.box_pad,   packed.plan.scene.effects};
+    l.scene = (photon_scene){.triangles = packed.geometry->triangles,
+                             .attributes = packed.geometry->attributes,
+                             .triangle_count = packed.model->triangles,
+                             .materials = packed.plan.materials,
+                             .atlas = &l.p.atlas,
+                             .ray_offset = packed.geometry->ray_offset,
+                             .box_pad = packed.plan.scene.box_pad,
+                             .effects = packed.plan.scene.effects};
     if (!photon_rays_open(&l.scene, 0, &l.rays))
         bench_fail("Embree fails");
     const cache_sights_input in = {

@@ -89,14 +89,14 @@ static void open_scene(lab *l) {
     must(pipeline_load(&l->p, &why));
     const pipeline_choice choice = pipeline_default(&l->p);
     must(pipeline_pack(&l->p, &choice, &l->packed, &why));
-    l->scene = (photon_scene){l->packed.geometry->triangles,
-                              l->packed.geometry->attributes,
-                              l->packed.model->triangles,
-                              l->packed.plan.materials,
-                              &l->p.atlas,
-                              l->packed.geometry->ray_offset,
-                              l->packed.plan.scene.box_pad,
-                              l->packed.plan.scene.effects};
+    l->scene = (photon_scene){.triangles = l->packed.geometry->triangles,
+                              .attributes = l->packed.geometry->attributes,
+                              .triangle_count = l->packed.model->triangles,
+                              .materials = l->packed.plan.materials,
+                              .atlas = &l->p.atlas,
+                              .ray_offset = l->packed.geometry->ray_offset,
+                              .box_pad = l->packed.plan.scene.box_pad,
+                              .effects = l->packed.plan.scene.effects};
     if (!photon_rays_open(&l->scene, 0, &l->rays))
         bench_fail("Embree fails");
     const cache_sights_input in = {
