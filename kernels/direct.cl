@@ -151,6 +151,25 @@ static inline lv3 lit_way(global const vit_scene *scene, global const vit_light 
     return l;
 }
 
+/* Adds the light of the frame's lights to the lanes of `hit`. */
+static inline void lit_by_lights(RAY_SCENE_PARAMETERS, uint frame, global const vit_light *lights, li hit,
+                                 lit_sample *s WORK_PASSED) {
+    for (uint i = 0; i < scene->lights; i++) {
+        global const vit_light *light = lights + (size_t)frame * scene->lights + i;
+        lv3 to;
+        lf e, d;
+        lv3 l = lit_way(scene, light, s, &to, &d, &e);
+        li lit = hit & L_GT(e, L_F(0));
+        if (!l_any(lit))
+            continue;
+        ray_packet r = ray_make(s->p, l);
+        WORK_LANES(shadow_rays, lit);
+        lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
+        WORK_TRACED(r);
+        lit_add(s, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
+    }
+}
+
 #if VIT_WITH(LIGHTS) && VIT_BUNDLE == 1
 kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vit_light *lights,
                          LIT_PARAMETERS WORK_PARAMETERS) {
@@ -162,20 +181,7 @@ kernel void direct_light(RAY_SCENE_PARAMETERS, ROUND_PARAMETERS, global const vi
         return;
     lit_sample s = lit_load(scene, ROUND, triangles, first, hit, hit_triangle, position, normal, rays, specular);
     WORK_BEGIN
-    for (uint i = 0; i < scene->lights; i++) {
-        global const vit_light *light = lights + (size_t)frame * scene->lights + i;
-        lv3 to;
-        lf e, d;
-        lv3 l = lit_way(scene, light, &s, &to, &d, &e);
-        li lit = hit & L_GT(e, L_F(0));
-        if (!l_any(lit))
-            continue;
-        ray_packet r = ray_make(s.p, l);
-        WORK_LANES(shadow_rays, lit);
-        lit &= ~ray_occluded(RAY_SCENE, &r, lit, d);
-        WORK_TRACED(r);
-        lit_add(&s, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
-    }
+    lit_by_lights(RAY_SCENE, frame, lights, hit, &s WORK_PASS);
     lit_store(scene, &s, first, albedo, specular, direct);
     WORK_END
 }

@@ -100,20 +100,8 @@ static inline lv3 gloss_reflected(GLOSS_PARAMETERS, const surface *s, lv3 d, li 
     q.specular = s->specular.specular;
     q.no_lobe = L_I(0);
     q.matt = q.glossy = lv3_set(L_F(0), L_F(0), L_F(0));
-    for (uint i = 0; VIT_EFFECT_LIGHTS && i < scene->lights; i++) {
-        global const vit_light *light = lights + (size_t)frame * scene->lights + i;
-        lv3 to;
-        lf e, way;
-        lv3 l = lit_way(scene, light, &q, &to, &way, &e);
-        li lit = hit & L_GT(e, L_F(0));
-        if (!l_any(lit))
-            continue;
-        ray_packet r = ray_make(q.p, l);
-        WORK_LANES(shadow_rays, lit);
-        lit &= ~ray_occluded(RAY_SCENE, &r, lit, way);
-        WORK_TRACED(r);
-        lit_add(&q, l, l_sel(lit, e, L_F(0)), lv3_load(light->intensity));
-    }
+    if (VIT_EFFECT_LIGHTS)
+        lit_by_lights(RAY_SCENE, frame, lights, hit, &q WORK_PASS);
     lv3 e = gloss_baked(GLOSS, s, hit, triangle, set, &q WORK_PASS);
     /* Baked light comes from all about. */
     li facets = L_LT(q.exponent, L_F(0)) & L_GT(q.specular.x + q.specular.y + q.specular.z, L_F(0));
@@ -257,9 +245,7 @@ kernel void gloss_filter(global const vit_scene *scene, ROUND_PARAMETERS, global
     if (!alone && !l_any(hit))
         return;
     li x, y;
-    l_pixel(scene, first, &x, &y);
-    x = max(min(x - 2, L_I((int)scene->width - 4)), L_I(0)); /* the window's corner: all of it inside the picture */
-    y = max(min(y - 2, L_I((int)scene->height - 4)), L_I(0));
+    skylight_window(scene, first, &x, &y);
     li right = L_I((int)scene->width - 1), bottom = L_I((int)scene->height - 1);
     lv3 p = sample_position(scene, position, first), own = l_decode_normal(L_LOAD(normal + first)),
         way = lv3_sub(p, lv3_load((cameras + frame)->eye));

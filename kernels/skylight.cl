@@ -4,10 +4,15 @@
  * after, so textures stay sharp. */
 
 #if VIT_WITH(SKY_RAYS) || VIT_WITH(GLOSS)
-#define SKYLIGHT_BENT                                                                                                          \
-    16.0f /* weight lost with the square of a neighbour's height over the tangent plane, by its distance: none left from 1/4   \
-           */
-#define SKYLIGHT_FLAT 4.0f /* ray_offsets of height that do not count: what rounding makes of a plane */
+#define SKYLIGHT_BENT 16.0f /* over (height / distance)^2 of a neighbour: no weight is left from 1/4 of the way on */
+#define SKYLIGHT_FLAT 4.0f  /* ray_offsets of height that do not count: what rounding makes of a plane */
+
+/* Corners of the samples' windows of 4 x 4 pixels, which lie in the picture whole where it is that large. */
+static inline void skylight_window(global const vit_scene *scene, uint first, li *x, li *y) {
+    l_pixel(scene, first, x, y);
+    *x = max(min(*x - 2, L_I((int)scene->width - 4)), L_I(0));
+    *y = max(min(*y - 2, L_I((int)scene->height - 4)), L_I(0));
+}
 
 /* Weights, 0..1, of samples at p of unit normal s in what those at `at` of normal `own` (packed: own_code) get. */
 static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, float flat) {
@@ -23,7 +28,6 @@ static inline lf skylight_weight(lv3 at, lv3 own, lu own_code, lv3 p, lu code, f
     }
     return w;
 }
-
 #endif
 
 #if VIT_WITH(SKY_RAYS)
@@ -65,9 +69,7 @@ kernel void sky_filter(global const vit_scene *scene, global const float *positi
     if (!l_any(hit))
         return;
     li x, y;
-    l_pixel(scene, first, &x, &y);
-    x = max(min(x - 2, L_I((int)scene->width - 4)), L_I(0)); /* the window's corner: all of it inside the picture */
-    y = max(min(y - 2, L_I((int)scene->height - 4)), L_I(0));
+    skylight_window(scene, first, &x, &y);
     li right = L_I((int)scene->width - 1), bottom = L_I((int)scene->height - 1);
     lit_sample s;
     s.hit = hit;

@@ -110,6 +110,11 @@ vit_status stage_shape(pipeline *p, vit_text *why) {
 vit_status stage_light_places(pipeline *p, vit_text *why) {
     const uint32_t lights = p->tracks.light_count;
     const float offset = p->geometry.ray_offset;
+    bool any = false;
+    for (uint32_t i = 0; i < lights; i++)
+        any = any || p->tracks.lights[i].kind != VIT_LIGHT_DIRECTIONAL;
+    if (!any)
+        return VIT_OK;
     light_in_surface *found = calloc(lights + 1u, sizeof *found);
     triangle_rays rays;
     if (!found || !triangle_rays_open(p->geometry.triangles, p->model.triangles, p->bvh.box_pad, p->threads, &rays)) {

@@ -71,7 +71,8 @@ static void a_light_that_changes_gives_what_one_that_stays_gives(void **state) {
     assert_true(fabs(rooms_mean(live, 2) / rooms_mean(live, 0) - 0.5) < 1e-4); /* linear in the light */
 }
 
-/* A lamp that is moved past a wall, 12 cm off it: much of what is round about comes from a spot smaller than patches are. */
+/* A lamp that is moved past a wall, 12 cm off it: much of what is round about comes from a spot smaller than patches are.
+ * Against receivers close by each other by many rays: by 64 rays theirs may be off by 3 % themselves. */
 static void a_lamp_close_to_a_wall_lights_what_is_round_about(void **state) {
     static rooms_picture light, live;
     FILE *f = scene_lab_create(*state, "close.cfg");
@@ -82,16 +83,12 @@ static void a_lamp_close_to_a_wall_lights_what_is_round_about(void **state) {
                   "{ time = 2.0; position = [-3.88, 1.8, 0.6]; } ); } );\n",
                   ROOMS_SIDE, ROOMS_SIDE, ROOMS_VIEWS);
     (void)fclose(f);
-    scene_lab_indirect(*state, "close.cfg", "--indirect basis --receiver-rays 256", light, ROOMS_FLOATS);
+    scene_lab_indirect(*state, "close.cfg", "--indirect basis --receiver-rays 2048 --receiver-spacing 6", light, ROOMS_FLOATS);
     scene_lab_indirect(*state, "close.cfg", "--indirect radiosity --receiver-rays 256 --patches 512", live, ROOMS_FLOATS);
-    double by_live = 0.0, baked = 0.0;
-    for (int view = 0; view < ROOMS_VIEWS; view++) {
+    for (int view = 0; view < ROOMS_VIEWS; view++)
         print_message("  view %d: %.4f\n", view, rooms_mean(live, view) / rooms_mean(light, view));
-        by_live += rooms_mean(live, view);
-        baked += rooms_mean(light, view);
-    }
-    print_message("  all: %.4f\n", by_live / baked);
-    assert_true(fabs(by_live / baked - 1.0) < 0.05); /* a view's varies by 0.01 with the rays */
+    for (int view = 0; view < ROOMS_VIEWS; view++)
+        assert_true(fabs(rooms_mean(live, view) / rooms_mean(light, view) - 1.0) < 0.05);
 }
 
 /* A yellow room behind a white wall: of a lamp that moves a tenth of what comes round the wall is blue, and as squares, by

@@ -38,6 +38,13 @@ static receivers_input seen_from_the_middle(lab *l, float spacing) {
                              .columns = 1};
 }
 
+static receivers placed(const receivers_input *in) {
+    receivers found;
+    vit_text why = {""};
+    assert_int_equal(receivers_place(in, &found, &why), VIT_OK);
+    return found;
+}
+
 static double linear(vec3 p) {
     return 1.0 + 0.6 * (double)p.x - 0.3 * (double)p.y + 0.2 * (double)p.z;
 }
@@ -111,9 +118,7 @@ static void receivers_of_a_plane_interpolate_what_is_linear(void **state) {
     open_lab(&l, room_closed(0.5f));
     for (size_t i = 0; i < sizeof spacings / sizeof *spacings; i++) {
         const receivers_input in = seen_from_the_middle(&l, spacings[i]);
-        receivers found;
-        vit_text why = {""};
-        assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+        receivers found = placed(&in);
         assert_int_equal(found.split_count, 0);
         const double worst = worst_of_linear(&l, &found);
         print_message("spacing %g: %u receivers of %u cells, off by %.4f of what a cell changes\n", (double)spacings[i],
@@ -196,10 +201,8 @@ static void divided_cells_fit_together(void **state) {
     open_lab(&l, room_closed(0.5f));
     receivers_input in = seen_from_the_middle(&l, 12.0f);
     in.look = look_at_a_spot;
-    receivers found;
-    vit_text why = {""};
+    receivers found = placed(&in);
     uint32_t divided[VIT_RECEIVER_PARTS + 1] = {0};
-    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
     for (uint32_t i = 0; i < found.cell_count; i++)
         if (VIT_RECEIVER_IS_DIVIDED(found.cells[i].split))
             divided[found.cells[i].split & ~VIT_RECEIVER_DIVIDED]++;
@@ -246,10 +249,9 @@ static void what_lies_near_records_follows_them_where_light_is_even(void **state
     in.records = 300;
     in.look = look_evenly;
     receivers even, spot;
-    vit_text why = {""};
-    assert_int_equal(receivers_place(&in, &even, &why), VIT_OK);
+    even = placed(&in);
     in.look = look_at_the_plate;
-    assert_int_equal(receivers_place(&in, &spot, &why), VIT_OK);
+    spot = placed(&in);
     float *value = calloc(even.count, sizeof *value);
     assert_non_null(value);
     for (uint32_t i = 0; i < even.count; i++) {
@@ -366,9 +368,7 @@ static void no_place_beside_a_wall_takes_light_of_its_inside(void **state) {
     open_lab(&l, room_with_wall());
     for (size_t i = 0; i < sizeof spacings / sizeof *spacings; i++) {
         const receivers_input in = seen_from_the_middle(&l, spacings[i]);
-        receivers found;
-        vit_text why = {""};
-        assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+        receivers found = placed(&in);
         const uint32_t near_wall = look_beside_the_wall(&l, &found);
         print_message("spacing %g: %u places beside the wall, %u parted cells\n", (double)spacings[i], near_wall,
                       found.split_count);
@@ -392,9 +392,7 @@ static void noise_is_smoothed_and_steps_stay(void **state) {
     lab l;
     open_lab(&l, room_closed(0.5f));
     const receivers_input in = seen_from_the_middle(&l, 2.5f);
-    receivers found;
-    vit_text why = {""};
-    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    receivers found = placed(&in);
     const float deviation = 0.1f, high = 1.0f;
     float *light = calloc(found.count, sizeof *light), *noise = calloc(found.count, sizeof *noise);
     assert_true(light && noise);
@@ -431,9 +429,7 @@ static void deviations_are_known_by_neighbours_together(void **state) {
     lab l;
     open_lab(&l, room_closed(0.5f));
     const receivers_input in = seen_from_the_middle(&l, 2.5f);
-    receivers found;
-    vit_text why = {""};
-    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    receivers found = placed(&in);
     float *noise = calloc(found.count, sizeof *noise), *own = calloc(found.count, sizeof *own);
     assert_true(noise && own);
     for (uint32_t i = 0; i < found.count; i++) {
@@ -470,12 +466,10 @@ static void what_lies_on_an_edge_is_seen_from_both_cells(void **state) {
     open_lab(&l, room_closed(0.5f));
     receivers_input in = seen_from_the_middle(&l, 12.0f);
     in.look = look_at_a_spot;
-    receivers found;
-    vit_text why = {""};
-    assert_int_equal(receivers_place(&in, &found, &why), VIT_OK);
+    receivers found = placed(&in);
     float *light = calloc(found.count, sizeof *light), *noise = calloc(found.count, sizeof *noise);
     assert_true(light && noise);
-    look_at_a_spot(&l, &found, light, noise, &why);
+    look_at_a_spot(&l, &found, light, noise, NULL);
     receivers_follow(&found, light, 1);
     double worst = 0;
     for (uint32_t s = 0; s < 2 * l.r->m.triangles; s += 2)
